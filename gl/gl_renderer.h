@@ -1,0 +1,16 @@
+/* The pipeline in OpenGL 4.6 core on OSMesa. */
+#ifndef PEEL_GL_RENDERER_H
+#define PEEL_GL_RENDERER_H
+
+#include "frame/frame.h"
+
+/* See Renderer. One call at a time in a process: OSMesa's context belongs to the calling thread
+ * while it runs. Fails with NO_GL when there is no 4.6 context or the driver reports an error.
+ * desc->unfused is not chosen here: the driver's mode is fixed per process and reported in
+ * Frame.fused. */
+Result gl_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out);
+
+/* Finds out, by rendering, whether the driver fuses multiply-adds in fixed-function code. */
+Result gl_driver_fuses(bool *fused);
+
+#endif

@@ -1,0 +1,11 @@
+/* The pure-C pipeline: bit for bit what the GL pipeline stores. */
+#ifndef PEEL_REF_PIPELINE_H
+#define PEEL_REF_PIPELINE_H
+
+#include "frame/frame.h"
+
+/* See Renderer. With a trace, or REF_PATH_DEFINITION, the scalar pass-by-pass path runs; without
+ * one the tile-resident path, which gives the same bits. */
+Result pipeline_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out);
+
+#endif

@@ -1,0 +1,60 @@
+#include "base/progress.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+static const char *label;
+static uint64_t steps;
+static double last_drawn;
+
+static double seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
+static void draw(uint64_t done)
+{
+    if (steps)
+        fprintf(stderr, "\r\033[K%s %3.0f%%", label, 100.0 * (double)done / (double)steps);
+    else
+        fprintf(stderr, "\r\033[K%s %llu", label, (unsigned long long)done);
+    fflush(stderr);
+}
+
+void progress_begin(const char *what, uint64_t total)
+{
+    if (!isatty(STDERR_FILENO))
+        return;
+    pthread_mutex_lock(&mutex);
+    label = what;
+    steps = total;
+    last_drawn = seconds();
+    draw(0);
+    pthread_mutex_unlock(&mutex);
+}
+
+void progress_step(uint64_t done)
+{
+    pthread_mutex_lock(&mutex);
+    if (label && seconds() - last_drawn > 0.1) {
+        last_drawn = seconds();
+        draw(done);
+    }
+    pthread_mutex_unlock(&mutex);
+}
+
+void progress_end(void)
+{
+    pthread_mutex_lock(&mutex);
+    if (label) {
+        fprintf(stderr, "\r\033[K");
+        fflush(stderr);
+        label = NULL;
+    }
+    pthread_mutex_unlock(&mutex);
+}

@@ -1,0 +1,12 @@
+/* A progress line on a terminal's stderr, and nothing in a pipe. One at a time. */
+#ifndef PEEL_BASE_PROGRESS_H
+#define PEEL_BASE_PROGRESS_H
+
+#include <stdint.h>
+
+/* what: a few words. total: steps expected; 0 when it is not known. */
+void progress_begin(const char *what, uint64_t total);
+void progress_step(uint64_t done); /* from any thread; redraws at most ten times a second */
+void progress_end(void);           /* clears the line */
+
+#endif

@@ -1,0 +1,64 @@
+#include "base/result.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static _Thread_local char message[1024];
+static bool warnings = true;
+
+const char *result_text(Result result)
+{
+    switch (result) {
+    case RESULT_OK:
+        return "done";
+    case RESULT_NO_MEMORY:
+        return "out of memory";
+    case RESULT_BAD_INPUT:
+        return "bad input";
+    case RESULT_IO:
+        return "input or output failed";
+    case RESULT_UNSUPPORTED:
+        return "not supported";
+    case RESULT_NO_GL:
+        return "OpenGL failed";
+    case RESULT_INTERNAL:
+        return "internal error";
+    }
+    return "unknown result";
+}
+
+Result result_fail(Result code, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    /* The contract is one line whatever a file name or a library's text contains. */
+    for (char *c = message; *c; c++)
+        if (*c == '\n' || *c == '\r')
+            *c = ' ';
+    return code;
+}
+
+const char *result_message(void)
+{
+    return message;
+}
+
+void result_warnings_enable(bool enable)
+{
+    warnings = enable;
+}
+
+void result_warn(const char *format, ...)
+{
+    if (!warnings)
+        return;
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    fprintf(stderr, "peel: warning: %s\n", text);
+}

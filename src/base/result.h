@@ -1,0 +1,31 @@
+/* What every fallible function returns, and the one-line message that goes with a failure. */
+#ifndef PEEL_BASE_RESULT_H
+#define PEEL_BASE_RESULT_H
+
+#include <stdbool.h>
+
+typedef enum Result {
+    RESULT_OK = 0,
+    RESULT_NO_MEMORY,   /* an allocation failed, or would exceed the caller's limit */
+    RESULT_BAD_INPUT,   /* a file, scene or option is malformed or out of range */
+    RESULT_IO,          /* the operating system refused to read or write */
+    RESULT_UNSUPPORTED, /* well-formed, but not modelled here */
+    RESULT_NO_GL,       /* no usable OpenGL context, or the driver reported an error */
+    RESULT_INTERNAL,    /* a bug */
+} Result;
+
+/* Never NULL; a static string. */
+const char *result_text(Result result);
+
+/* Records a one-line message (what, where, what was expected; no final full stop) for the calling
+ * thread and returns code, so that callers write `return result_fail(RESULT_IO, "%s: ...", path)`. */
+Result result_fail(Result code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The calling thread's latest message, "" if there is none. Valid until its next result_fail. */
+const char *result_message(void);
+
+/* One line "peel: warning: ..." on stderr, unless warnings are off. */
+void result_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void result_warnings_enable(bool enable);
+
+#endif

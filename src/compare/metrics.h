@@ -1,0 +1,53 @@
+/* Figures of the difference between two buffers or images. Nothing here knows who drew what. */
+#ifndef PEEL_COMPARE_METRICS_H
+#define PEEL_COMPARE_METRICS_H
+
+#include "image/image.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Difference of one named trace buffer, channel value by channel value. */
+typedef struct BufferMetrics {
+    char name[48];
+    uint64_t values;    /* compared */
+    uint64_t differing; /* stored bits differ, two NaNs apart */
+    uint32_t max_ulp;   /* greatest distance in representable values */
+    double max_abs;     /* greatest absolute difference; unorm scaled to [0, 1] */
+    bool has_first;
+    int first[3];       /* x, y, channel of the first differing value, from the top left */
+} BufferMetrics;
+
+/* Difference of two final images over R, G, B and A. */
+typedef struct FinalMetrics {
+    uint64_t pixels;
+    uint64_t differing; /* pixels with any differing bit */
+    uint64_t nonfinite; /* pixels where a or b is NaN or infinite: left out of the averages */
+    double max_abs, mean_abs, rmse; /* over channel values */
+    double psnr;        /* dB for peak 1; INFINITY when equal */
+    uint32_t max_ulp;
+} FinalMetrics;
+
+/* Difference where both sides see the same fragments in the same order. */
+typedef struct UnaffectedMetrics {
+    uint64_t pixels;
+    double max_abs;
+    double max_rel; /* relative to max(1, |b|) */
+    double p99_rel; /* 99th percentile over pixels of a pixel's greatest relative difference */
+} UnaffectedMetrics;
+
+/* Folds the differences of a rectangle of two buffers of one format into metrics (zeroed or from
+ * earlier rectangles): rows of a_row_bytes and b_row_bytes, the rectangle's corner at (x, y) of
+ * the buffer. Rectangles must come in reading order for `first` to be the first. */
+void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, int width,
+                    int height, const void *a, size_t a_row_bytes, const void *b,
+                    size_t b_row_bytes);
+
+/* a and b: FORMAT_RGBA32F of one size. */
+void metrics_final(const Image *a, const Image *b, FinalMetrics *out);
+
+/* mask: width·height bytes, nonzero where the structure agrees. NO_MEMORY on failure. */
+Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *mask,
+                          UnaffectedMetrics *out);
+
+#endif

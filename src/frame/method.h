@@ -1,0 +1,18 @@
+/* The one table of methods; commands, tests, benchmarks and reports iterate it. */
+#ifndef PEEL_FRAME_METHOD_H
+#define PEEL_FRAME_METHOD_H
+
+#include "frame/render_desc.h"
+
+typedef struct MethodInfo {
+    MethodId id;
+    const char *name; /* as on the command line */
+    const char *paper;
+    const char *summary;
+    bool exact; /* converges to the sorted result with enough passes, ties apart */
+} MethodInfo;
+
+const MethodInfo *method_info(MethodId id);        /* static */
+const MethodInfo *method_find(const char *name);   /* NULL when there is none */
+
+#endif

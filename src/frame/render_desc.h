@@ -1,0 +1,59 @@
+/* What to render and how: the one description that all three renderers receive.
+ * Zero is the default everywhere, so `(RenderDesc){.width = 640, .height = 360}` is complete. */
+#ifndef PEEL_FRAME_RENDER_DESC_H
+#define PEEL_FRAME_RENDER_DESC_H
+
+#include "number/format.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum MethodId { METHOD_PEEL = 0, METHOD_COUNT } MethodId;
+typedef enum GBufferFormat { GBUFFER_FULL = 0, GBUFFER_SEED } GBufferFormat;
+typedef enum DepthFunc { DEPTH_LESS = 0, DEPTH_LEQUAL } DepthFunc;
+/* stored: a fragment's depth is converted to the stored format before it is compared with a
+ * previous layer; raw: gl_FragCoord.z is compared with the fetched value as it is. */
+typedef enum PeelTest { PEEL_TEST_STORED = 0, PEEL_TEST_RAW } PeelTest;
+/* gltf: back faces of single-sided materials are culled; seed: of opaque materials only. */
+typedef enum CullMode { CULL_GLTF = 0, CULL_SEED, CULL_NONE } CullMode;
+typedef enum NormalMode { NORMALS_FACED = 0, NORMALS_KEPT } NormalMode;
+/* under: destination alpha becomes 0 behind opaque; seed: glBlendFunc(DST_ALPHA, ONE) for all
+ * four channels, so destination alpha becomes 2T and means nothing. RGB is the same. */
+typedef enum OpaqueBlend { OPAQUE_BLEND_UNDER = 0, OPAQUE_BLEND_SEED } OpaqueBlend;
+typedef enum RefPath { REF_PATH_AUTO = 0, REF_PATH_DEFINITION, REF_PATH_TILE } RefPath;
+
+enum { SIZE_MAX_PIXELS = 16384 }; /* per side */
+enum { PASSES_MAX = 4096 };
+
+typedef struct RenderDesc {
+    int width, height; /* pixels, 1 … SIZE_MAX_PIXELS */
+    int camera;        /* index into the scene's cameras */
+    double time;       /* seconds; turns the lights */
+    int lights;        /* first N of the scene's; 0 all, negative none */
+    MethodId method;
+    int passes; /* at most N peels; 0 until a peel yields no fragment */
+    PixelFormat depth; /* FORMAT_D32F or FORMAT_D24; FORMAT_RGBA32F (zero) means the default D32F */
+    PixelFormat accum; /* FORMAT_RGBA32F or FORMAT_RGBA16 */
+    GBufferFormat gbuffer;
+    DepthFunc depth_func;
+    PeelTest peel_test;
+    CullMode cull;
+    NormalMode normals;
+    OpaqueBlend opaque_blend;
+    bool unfused;  /* model a driver without fused multiply-add */
+    RefPath ref_path;
+    int threads;       /* 0: one per processor */
+    size_t max_memory; /* bytes a renderer may allocate for buffers; 0: 4 GiB */
+} RenderDesc;
+
+/* The depth format with the default filled in. */
+static inline PixelFormat render_desc_depth(const RenderDesc *desc)
+{
+    return desc->depth == FORMAT_D24 ? FORMAT_D24 : FORMAT_D32F;
+}
+
+/* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,
+ * raw peel test, its culling, normals and opaque blend. */
+void render_desc_seed_profile(RenderDesc *desc);
+
+#endif

@@ -1,0 +1,61 @@
+/* The shading formula, written once: the order of operations that ref/pipeline (single precision,
+ * through op.h) and gl (GLSL, `precise`) follow to the letter, and that ref/truth evaluates in
+ * double with its own code.
+ *
+ * Source: L. Rapetta, "OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling" and its program:
+ * Cook-Torrance with GGX distribution, Schlick-GGX geometry term, Schlick's Fresnel. The clamps
+ * are ours, so that no stored value is ever NaN.
+ *
+ * Everything is in view space; the eye is at 0. dot, max, clamp, inversesqrt, mix: GLSL's, as
+ * number/op.h states them; `a·b·c` is (a·b)·c.
+ *
+ * Geometry pass, per fragment, from smooth varyings p and n:
+ *   N = n · inversesqrt(max(dot(n, n), SHADING_TINY));  faced: −N on a back face
+ *   stored: depth; normal (N, 0); position (p, 1); diffuse (base colour, alpha; alpha 1 unless
+ *   BLEND); material (roughness, metallic, occlusion, 0). Cleared to 0; depth to 1.
+ *   A transparent fragment is discarded where its depth ≥ the opaque depth, and, from the second
+ *   peel on, where its depth ≤ the previous peel's.
+ *
+ * Lighting pass, per pixel, from the stored values P, N, diffuse, alpha, roughness, metallic, ao;
+ * discarded where alpha ≤ SHADING_ALPHA_TEST:
+ *   V   = (−P) · inversesqrt(max(dot(P, P), SHADING_TINY))
+ *   r   = min(max(roughness, SHADING_ROUGHNESS_MIN), 1)
+ *   a   = r·r;  a2 = a·a;  am = a2 − 1
+ *   k1  = r + 1;  k = k1·k1·0.125;  km = 1 − k
+ *   NV  = max(dot(N, V), 0);  GV = NV / (NV·km + k);  NV4 = 4·NV
+ *   F0  = mix(0.04, diffuse, metallic);  Fm = 1 − F0
+ *   lambert = diffuse·(1 − metallic) / SHADING_PI
+ *   sum = 0, and for every light in order:
+ *     D   = light.position − P;  d2 = max(dot(D, D), SHADING_DISTANCE2_MIN);  d = sqrt(d2)
+ *     L   = D · (1/d)
+ *     h   = V + L;  H = h · inversesqrt(max(dot(h, h), SHADING_TINY))
+ *     NL  = max(dot(N, L), 0);  NH = max(dot(N, H), 0);  HV = max(dot(H, V), 0)
+ *     den = NH·NH·am + 1;  dist = a2 / (SHADING_PI·den·den)
+ *     GL  = NL / (NL·km + k)
+ *     x   = clamp(1 − HV, 0, 1);  x2 = x·x;  x5 = x2·x2·x;  F = F0 + Fm·x5
+ *     s   = dist·(GV·GL) / (NV4·NL + SHADING_SPECULAR_BIAS)
+ *     att = 1 / (att.constant + att.linear·d + att.quadratic·d2)
+ *     sum = sum + ((1 − F)·lambert + F·s) · (color·att·NL)
+ *   c   = sum + ambient·diffuse·ao
+ *   source = (c·alpha, alpha)
+ *
+ * Under-blend into the accumulation buffer, cleared to (0, 0, 0, 1):
+ *   rgb = source.rgb·dst.a + dst.rgb;  a = source.a·0 + dst.a·(1 − source.a)
+ *   the opaque pass with OPAQUE_BLEND_SEED: all four channels source·dst.a + dst
+ *
+ * Resolve, per pixel: T = accum.a, or with OPAQUE_BLEND_SEED 0 where the opaque G-buffer's alpha
+ * > SHADING_ALPHA_TEST;
+ *   final = (accum.rgb + background·T, 1 − T)
+ *   display = (pow(c / (c + 1), SHADING_DISPLAY_POWER) of c = max(final.rgb, 0), 1) */
+#ifndef PEEL_FRAME_SHADING_H
+#define PEEL_FRAME_SHADING_H
+
+#define SHADING_TINY          1e-20f
+#define SHADING_ALPHA_TEST    1e-4f
+#define SHADING_ROUGHNESS_MIN 0.045f
+#define SHADING_DISTANCE2_MIN 1e-4f
+#define SHADING_SPECULAR_BIAS 1e-4f
+#define SHADING_PI            3.14159265f
+#define SHADING_DISPLAY_POWER 0.45454547f /* 1/2.2 */
+
+#endif

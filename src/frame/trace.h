@@ -1,0 +1,45 @@
+/* The trace: a renderer hands each finished buffer to a sink, step by step.
+ *
+ * Names: opaque.depth opaque.normal opaque.position opaque.diffuse opaque.material,
+ * peel.K.depth peel.K.normal peel.K.position peel.K.diffuse peel.K.material peel.K.accum (K from
+ * 0; accum after blending peel K), accum (after the opaque lighting pass), display.
+ * opaque.primitive and peel.K.primitive (FORMAT_R32UI, UINT32_MAX where there is no fragment) tell
+ * which triangle a fragment came from; ref and truth give them, gl does not.
+ * Values are the stored values in their stored formats; rows from top to bottom. */
+#ifndef PEEL_FRAME_TRACE_H
+#define PEEL_FRAME_TRACE_H
+
+#include "base/result.h"
+#include "number/format.h"
+
+#include <stddef.h>
+
+/* Rectangles start at multiples of TRACE_TILE and end there or at the image's edge. */
+enum { TRACE_TILE = 64 };
+
+typedef struct TraceBuffer {
+    const char *name;
+    int step; /* 0 opaque pass, K + 1 peel K, then accum and display: order of completion */
+    PixelFormat format;
+    int image_width, image_height; /* of the whole buffer */
+    int x, y, width, height;       /* the rectangle given here */
+    const void *pixels;            /* the rectangle's rows, top first */
+    size_t row_bytes;
+} TraceBuffer;
+
+typedef struct TraceSink TraceSink;
+struct TraceSink {
+    /* Copies what it wants; pixels are the renderer's again on return. Called by one thread at a
+     * time. A failure ends the rendering with that result. */
+    Result (*put)(TraceSink *sink, const TraceBuffer *buffer);
+};
+
+/* A whole buffer with tightly packed rows. A NULL sink takes everything and keeps nothing. */
+Result trace_put(TraceSink *sink, const char *name, int step, PixelFormat format, int width,
+                 int height, const void *pixels);
+
+/* The same for peel `peel`: the name is "peel.K.<what>" and the step K + 1. */
+Result trace_put_peel(TraceSink *sink, int peel, const char *what, PixelFormat format, int width,
+                      int height, const void *pixels);
+
+#endif

@@ -1,0 +1,42 @@
+/* What the camera makes of a scene: the floats that all three renderers share.
+ *
+ * Matrices are computed in double and rounded to float once; lights are brought to view space the
+ * same way. Draws are in scene order; primitive ids count triangles through all draws, so a
+ * smaller id is earlier in the scene whatever list a draw is in. */
+#ifndef PEEL_FRAME_VIEW_H
+#define PEEL_FRAME_VIEW_H
+
+#include "frame/render_desc.h"
+#include "scene/scene.h"
+
+typedef struct Draw {
+    uint32_t instance, mesh, material;
+    uint32_t first_primitive; /* id of its first triangle */
+    bool transparent;         /* alpha mode BLEND */
+    bool flipped;             /* the matrix mirrors: front and back change places */
+    bool cull_back;           /* back faces are discarded */
+    float model_view[16];     /* column-major; last row 0 0 0 1 */
+    float normal_matrix[9];   /* column-major inverse transpose of model_view's 3×3 */
+} Draw;
+
+typedef struct ViewLight {
+    float position[3]; /* view space */
+    float color[3];
+    float attenuation[3];
+} ViewLight;
+
+typedef struct View {
+    int width, height;
+    float projection[16];
+    size_t draw_count;
+    Draw *draws; /* invisible instances (masked away, alpha < 1e-4) left out */
+    size_t light_count;
+    ViewLight *lights;
+    float ambient[3], background[3];
+} View;
+
+/* Fails with BAD_INPUT when desc names no camera of the scene or no valid size. */
+Result view_build(const Scene *scene, const RenderDesc *desc, View *out);
+void view_free(View *view);
+
+#endif

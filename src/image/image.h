@@ -1,0 +1,26 @@
+/* An image in memory: rows from top to bottom, pixels tightly packed in one PixelFormat. */
+#ifndef PEEL_IMAGE_IMAGE_H
+#define PEEL_IMAGE_IMAGE_H
+
+#include "base/result.h"
+#include "number/format.h"
+
+#include <stddef.h>
+
+typedef struct Image {
+    int width, height;
+    PixelFormat format;
+    void *pixels; /* width·height·format_pixel_bytes(format) bytes, owned */
+} Image;
+
+/* Zeroed pixels. The caller frees with image_free. */
+Result image_create(int width, int height, PixelFormat format, Image *out);
+void image_free(Image *image); /* leaves an empty image; NULL pixels are fine */
+
+static inline void *image_pixel(const Image *image, int x, int y)
+{
+    return (char *)image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) *
+                                       format_pixel_bytes(image->format);
+}
+
+#endif

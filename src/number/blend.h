@@ -1,0 +1,19 @@
+/* Fixed-function blending as llvmpipe computes it, per accumulation format.
+ * Callers are in flushing mode (op_enter). */
+#ifndef PEEL_NUMBER_BLEND_H
+#define PEEL_NUMBER_BLEND_H
+
+#include "number/format.h"
+
+/* Clears one pixel to (0, 0, 0, 1): no colour, full transmittance. */
+void blend_clear(PixelFormat format, void *pixel);
+
+/* glBlendFuncSeparate(DST_ALPHA, ONE, ZERO, ONE_MINUS_SRC_ALPHA): source is a premultiplied
+ * colour and its alpha, put behind what pixel already holds; pixel's alpha is transmittance.
+ * Source: Bavoil, Myers, "Order Independent Transparency with Dual Depth Peeling", 2008. */
+void blend_under(PixelFormat format, const float source[4], void *pixel);
+
+/* glBlendFunc(DST_ALPHA, ONE) on all four channels: the original program's opaque pass. */
+void blend_opaque_seed(PixelFormat format, const float source[4], void *pixel);
+
+#endif

@@ -1,0 +1,62 @@
+/* Stored number formats: conversions as llvmpipe makes them, and distances between stored values.
+ *
+ * Facts: measured, see ref/pipeline/NUMBERS.md; pinned by tests/unit/test_format.c and
+ * tests/cross/test_arithmetic.c. Callers are in flushing mode (op_enter). */
+#ifndef PEEL_NUMBER_FORMAT_H
+#define PEEL_NUMBER_FORMAT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum PixelFormat {
+    FORMAT_RGBA32F = 0,
+    FORMAT_RGBA16F,
+    FORMAT_RGBA16, /* unorm */
+    FORMAT_RGBA8,  /* unorm */
+    FORMAT_D32F,   /* window depth as a float */
+    FORMAT_D24,    /* window depth as a 24-bit unorm in a uint32_t */
+    FORMAT_R32UI,  /* an index; UINT32_MAX is none */
+    FORMAT_COUNT
+} PixelFormat;
+
+typedef enum FormatKind { KIND_FLOAT, KIND_HALF, KIND_UNORM, KIND_UINT } FormatKind;
+
+typedef struct FormatInfo {
+    const char *name; /* "rgba32f", as the command line and JSON spell it */
+    FormatKind kind;
+    int channels;
+    int channel_bytes;
+    uint32_t unorm_max; /* the integer that means 1; 0 unless KIND_UNORM */
+} FormatInfo;
+
+const FormatInfo *format_info(PixelFormat format); /* static */
+size_t format_pixel_bytes(PixelFormat format);
+
+/* Channel `channel` of the pixel at `pixel`, as a number: floats as they are, halves exactly,
+ * unorm as integer / unorm_max in double, rounded to float. */
+float format_channel(PixelFormat format, const void *pixel, int channel);
+
+/* RGBA8: round to nearest even of clamp(x)·255; NaN gives 0. */
+uint8_t unorm8_from_float(float x);
+/* A texel fetch: (float)i · (float)(1/255), not a division. */
+float unorm8_to_float(uint8_t i);
+
+uint16_t unorm16_from_float(float x);
+float unorm16_to_float(uint16_t i);
+
+/* Half: truncated toward zero, finite overflow to 65504 (0x7bff), infinity kept, denormals made;
+ * the driver does not round to nearest. */
+uint16_t half_from_float(float x);
+float half_to_float(uint16_t half); /* exact */
+
+/* gl_FragCoord.z to the stored depth: clamped to [0, 1], NaN to 1. */
+float depth32f_from_float(float z);
+uint32_t depth24_from_float(float z);
+float depth24_to_float(uint32_t depth); /* a texel fetch: (float)u · (float)(1/(2^24 − 1)) */
+
+/* The number of representable values between two stored values: 0 iff the bits are equal or both
+ * are NaN; +0 and −0 are 1 apart; UINT32_MAX between a NaN and a number. */
+uint32_t ulp_distance(float a, float b);
+uint32_t ulp_distance_half(uint16_t a, uint16_t b);
+
+#endif

@@ -1,0 +1,60 @@
+/* All three renderers on one scene, compared buffer by buffer. */
+#ifndef PEEL_STUDY_THREEWAY_H
+#define PEEL_STUDY_THREEWAY_H
+
+#include "compare/metrics.h"
+#include "frame/frame.h"
+
+enum { RENDERER_REF, RENDERER_GL, RENDERER_TRUTH, RENDERER_COUNT };
+
+typedef struct PairReport {
+    int a, b; /* RENDERER_… */
+    BufferMetrics *buffers; /* ref–gl only: one per traced buffer, in order of completion */
+    size_t buffer_count;
+    FinalMetrics final;
+    bool has_unaffected; /* pairs with truth */
+    UnaffectedMetrics unaffected;
+} PairReport;
+
+/* Counts of how ref's fragments differ from truth's. */
+typedef struct StructureReport {
+    LayerStats layers;         /* ref's counts; max, fragments, coverage_differs from truth */
+    uint64_t order_inversions; /* adjacent fragments that truth orders the other way */
+    uint64_t opaque_flips;     /* pixels whose nearest opaque triangle differs */
+    uint64_t set_differs;      /* fragments that only one side has, ties and limit apart */
+    uint8_t *same;             /* width·height: 1 where fragments and order agree */
+} StructureReport;
+
+/* One peel, for pictures: ref's accumulation after it, and what it added. */
+typedef struct PeelPicture {
+    int peel;
+    uint64_t pixels;  /* with a fragment */
+    Image accum;      /* FORMAT_RGBA32F, reduced to at most 320 pixels wide; A = transmittance */
+    Image added;      /* the same size: this peel's contribution, RGB; A = 1 where a fragment is */
+} PeelPicture;
+
+typedef struct Threeway {
+    const char *scene_name, *scene_path;
+    RenderDesc desc;
+    bool seed_profile;
+    double tolerance;
+    Frame frames[RENDERER_COUNT];
+    PairReport pairs[3]; /* ref–gl, ref–truth, gl–truth */
+    StructureReport structure;
+    PeelPicture *peels;
+    size_t peel_count;   /* pictures kept, at most PEEL_PICTURES_MAX */
+    bool agree;          /* the verdict: exit code 0 */
+} Threeway;
+
+enum { PEEL_PICTURES_MAX = 64 };
+
+/* Renderers in the order of RENDERER_…; any may fail, and the message says which.
+ * keep_pictures: fill peels. The caller frees with threeway_free. */
+Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc,
+                    const Renderer renderers[RENDERER_COUNT], double tolerance,
+                    bool keep_pictures, Threeway *out);
+void threeway_free(Threeway *report);
+
+const char *threeway_renderer_name(int renderer); /* "ref", "gl", "truth" */
+
+#endif

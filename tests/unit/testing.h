@@ -1,0 +1,36 @@
+/* What the unit tests share: bit-exact assertions and a main() for one suite. */
+#ifndef PEEL_TESTS_TESTING_H
+#define PEEL_TESTS_TESTING_H
+
+#include <check.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static inline uint32_t testing_bits(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* Equal bits; prints both in decimal and in hexadecimal float. */
+#define ck_assert_float_bits(got, expected)                                                        \
+    do {                                                                                           \
+        float testing_got = (got), testing_expected = (expected);                                  \
+        ck_assert_msg(testing_bits(testing_got) == testing_bits(testing_expected),                 \
+                      "%s: got %.9g (%a), expected %.9g (%a)", #got, (double)testing_got,          \
+                      (double)testing_got, (double)testing_expected, (double)testing_expected);    \
+    } while (0)
+
+/* Runs the suite in one process per test and returns the exit code of main. */
+static inline int testing_run(Suite *suite)
+{
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+#endif
