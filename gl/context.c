@@ -1,0 +1,158 @@
+#include "context.h"
+
+#include <GL/osmesa.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { WINDOW_PIXELS = 16 }; /* the window that OSMesa insists on; nothing is drawn to it */
+
+struct Context {
+    OSMesaContext handle;
+    ContextLimits limits;
+    char failure[512]; /* the first error the driver reported, "" if none */
+    unsigned char window[WINDOW_PIXELS * WINDOW_PIXELS * 4];
+};
+
+static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity,
+                                GLsizei length, const GLchar *message, const void *user)
+{
+    (void)source, (void)id, (void)length;
+    Context *context = (Context *)user;
+    if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH)
+        return;
+    if (!context->failure[0])
+        snprintf(context->failure, sizeof context->failure, "%s", message);
+}
+
+static ApiFunction lookup(const char *name)
+{
+    return (ApiFunction)OSMesaGetProcAddress(name);
+}
+
+/* llvmpipe reads its environment once, when the first context is made. */
+static void prepare_environment(int threads)
+{
+    static bool prepared;
+    if (prepared)
+        return;
+    prepared = true;
+    /* llvmpipe offers 4.5; what it lacks of 4.6 is not used here. */
+    setenv("MESA_GL_VERSION_OVERRIDE", "4.6", 1);
+    setenv("MESA_GLSL_VERSION_OVERRIDE", "460", 1);
+    if (threads > 0) {
+        char text[16];
+        snprintf(text, sizeof text, "%d", threads);
+        setenv("LP_NUM_THREADS", text, 0);
+    }
+}
+
+int context_threads(void)
+{
+    const char *text = getenv("LP_NUM_THREADS");
+    long threads = text ? strtol(text, NULL, 0) : sysconf(_SC_NPROCESSORS_ONLN);
+    return threads < 1 ? 1 : threads > 1024 ? 1024 : (int)threads;
+}
+
+static Result check_driver(Context *context)
+{
+    GLint major = 0, minor = 0, samples = 0;
+    gl.GetIntegerv(GL_MAJOR_VERSION, &major);
+    gl.GetIntegerv(GL_MINOR_VERSION, &minor);
+    if (major * 10 + minor < 46)
+        return result_fail(RESULT_NO_GL, "OpenGL: version 4.6 expected, %s has %d.%d",
+                           (const char *)gl.GetString(GL_RENDERER), major, minor);
+    gl.GetIntegerv(GL_SAMPLES, &samples);
+    if (samples != 0)
+        return result_fail(RESULT_NO_GL, "OpenGL: no multisampling expected, %d samples found",
+                           samples);
+    ContextLimits *limits = &context->limits;
+    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits->texture_size);
+    gl.GetIntegerv(GL_MAX_VIEWPORT_DIMS, limits->viewport);
+    gl.GetIntegerv(GL_MAX_DRAW_BUFFERS, &limits->draw_buffers);
+    gl.GetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &limits->uniform_block);
+    gl.GetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits->storage_block);
+    return RESULT_OK;
+}
+
+static Result start(Context *context)
+{
+    static const int attributes[] = {OSMESA_FORMAT,
+                                     OSMESA_RGBA,
+                                     OSMESA_DEPTH_BITS,
+                                     0,
+                                     OSMESA_PROFILE,
+                                     OSMESA_CORE_PROFILE,
+                                     OSMESA_CONTEXT_MAJOR_VERSION,
+                                     4,
+                                     OSMESA_CONTEXT_MINOR_VERSION,
+                                     6,
+                                     0};
+    context->handle = OSMesaCreateContextAttribs(attributes, NULL);
+    if (!context->handle ||
+        !OSMesaMakeCurrent(context->handle, context->window, GL_UNSIGNED_BYTE, WINDOW_PIXELS,
+                           WINDOW_PIXELS))
+        return result_fail(RESULT_NO_GL, "OSMesa: cannot make an OpenGL 4.6 core context");
+    Result result = api_load(lookup);
+    if (result == RESULT_OK)
+        result = check_driver(context);
+    if (result != RESULT_OK)
+        return result;
+    gl.Enable(GL_DEBUG_OUTPUT);
+    gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    gl.DebugMessageCallback(on_message, context);
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl.ClampColor(GL_CLAMP_READ_COLOR, GL_FALSE);
+    return context_check(context, "context");
+}
+
+Result context_open(int threads, Context **out)
+{
+    *out = NULL;
+    prepare_environment(threads);
+    Context *context = calloc(1, sizeof *context);
+    if (!context)
+        return result_fail(RESULT_NO_MEMORY, "OpenGL: no memory for a context");
+    Result result = start(context);
+    if (result != RESULT_OK) {
+        context_close(context);
+        return result;
+    }
+    *out = context;
+    return RESULT_OK;
+}
+
+void context_close(Context *context)
+{
+    if (!context)
+        return;
+    if (context->handle) {
+        OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
+        OSMesaDestroyContext(context->handle);
+    }
+    free(context);
+}
+
+const ContextLimits *context_limits(const Context *context)
+{
+    return &context->limits;
+}
+
+Result context_check(Context *context, const char *where)
+{
+    gl.Finish();
+    GLenum error = gl.GetError();
+    if (error == GL_NO_ERROR && !context->failure[0])
+        return RESULT_OK;
+    Result code = error == GL_OUT_OF_MEMORY ? RESULT_NO_MEMORY : RESULT_NO_GL;
+    char text[sizeof context->failure];
+    if (context->failure[0])
+        memcpy(text, context->failure, sizeof text);
+    else
+        snprintf(text, sizeof text, "error 0x%04x", error);
+    context->failure[0] = '\0';
+    return result_fail(code, "OpenGL: %s: %s", where, text);
+}

@@ -1,0 +1,202 @@
+#include "passes.h"
+
+#include "program.h"
+
+#include <stdio.h>
+
+/* Uniform locations of shaders/geometry.*.glsl. */
+enum {
+    UNIFORM_MODEL_VIEW,
+    UNIFORM_NORMAL_MATRIX,
+    UNIFORM_PROJECTION,
+    UNIFORM_BASE_COLOR,
+    UNIFORM_MATERIAL,
+    UNIFORM_CULL_BACK,
+    UNIFORM_FLIPPED,
+};
+
+enum { UNIFORM_AMBIENT = 0, UNIFORM_BACKGROUND = 0 };
+
+static Result build_geometry(const RenderDesc *desc, GeometryPass pass, GLuint *out)
+{
+    static const char *const names[] = {"opaque geometry", "first peel", "next peel"};
+    static const char *const stages[] = {"", "#define TRANSPARENT\n",
+                                         "#define TRANSPARENT\n#define NEXT_PEEL\n"};
+    char defines[256];
+    snprintf(defines, sizeof defines, "%s%s%s%s", stages[pass],
+             desc->normals == NORMALS_FACED ? "#define FACED\n" : "",
+             desc->peel_test == PEEL_TEST_RAW ? "#define TEST_RAW\n" : "",
+             render_desc_depth(desc) == FORMAT_D24 ? "#define DEPTH_24\n" : "");
+    return program_build(names[pass], defines, shader_geometry_vert, shader_geometry_frag, out);
+}
+
+static Result build_programs(Passes *passes)
+{
+    const RenderDesc *desc = passes->desc;
+    Result result = RESULT_OK;
+    for (int i = 0; i < GEOMETRY_PASSES && result == RESULT_OK; i++)
+        result = build_geometry(desc, (GeometryPass)i, &passes->geometry[i]);
+    if (result != RESULT_OK)
+        return result;
+
+    char defines[96];
+    snprintf(defines, sizeof defines, "#define LIGHT_COUNT %zu\n%s", passes->view->light_count,
+             passes->lights.storage ? "#define LIGHTS_STORAGE\n" : "");
+    result = program_build("lighting", defines, shader_fullscreen_vert, shader_lighting_frag,
+                           &passes->lighting);
+    if (result == RESULT_OK)
+        result = program_build(
+            "resolve", desc->opaque_blend == OPAQUE_BLEND_SEED ? "#define SEED_BLEND\n" : "",
+            shader_fullscreen_vert, shader_resolve_frag, &passes->resolve);
+    return result;
+}
+
+/* What no draw changes. */
+static void set_constants(Passes *passes)
+{
+    const RenderDesc *desc = passes->desc;
+    for (int i = 0; i < GEOMETRY_PASSES; i++)
+        gl.ProgramUniformMatrix4fv(passes->geometry[i], UNIFORM_PROJECTION, 1, GL_FALSE,
+                                   passes->view->projection);
+    gl.ProgramUniform3fv(passes->lighting, UNIFORM_AMBIENT, 1, passes->view->ambient);
+    gl.ProgramUniform3fv(passes->resolve, UNIFORM_BACKGROUND, 1, passes->view->background);
+    gl.Viewport(0, 0, desc->width, desc->height);
+    gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
+    gl.BindVertexArray(passes->meshes.vertex_array);
+}
+
+Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc,
+                     const View *view, Passes *out)
+{
+    *out = (Passes){.context = context, .scene = scene, .desc = desc, .view = view};
+    Result result = targets_create(context, desc, &out->targets);
+    if (result == RESULT_OK)
+        result = upload_meshes(context, scene, &out->meshes);
+    if (result == RESULT_OK)
+        result = upload_lights(context, view, &out->lights);
+    if (result == RESULT_OK)
+        result = build_programs(out);
+    if (result == RESULT_OK) {
+        gl.CreateQueries(GL_SAMPLES_PASSED, 1, &out->samples);
+        set_constants(out);
+        result = context_check(context, "set-up");
+    }
+    if (result != RESULT_OK)
+        passes_destroy(out);
+    return result;
+}
+
+void passes_destroy(Passes *passes)
+{
+    targets_destroy(&passes->targets);
+    upload_free_meshes(&passes->meshes);
+    upload_free_lights(&passes->lights);
+    for (int i = 0; i < GEOMETRY_PASSES; i++)
+        gl.DeleteProgram(passes->geometry[i]);
+    gl.DeleteProgram(passes->lighting);
+    gl.DeleteProgram(passes->resolve);
+    gl.DeleteQueries(1, &passes->samples);
+    *passes = (Passes){0};
+}
+
+static void clear_gbuffer(GLuint framebuffer)
+{
+    static const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f}, far = 1.0f;
+    for (int i = 0; i < GBUFFER_TARGETS; i++)
+        gl.ClearNamedFramebufferfv(framebuffer, GL_COLOR, i, zero);
+    gl.ClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
+}
+
+static void draw(const Passes *passes, GLuint program, const Draw *item)
+{
+    const MeshRange *range = &passes->meshes.ranges[item->mesh];
+    if (range->index_count == 0)
+        return;
+    const Material *material = &passes->scene->materials[item->material];
+    const float *base = material->base_color;
+    const float color[4] = {base[0], base[1], base[2], item->transparent ? base[3] : 1.0f};
+    const float surface[3] = {material->roughness, material->metallic, material->occlusion};
+    gl.ProgramUniformMatrix4fv(program, UNIFORM_MODEL_VIEW, 1, GL_FALSE, item->model_view);
+    gl.ProgramUniformMatrix3fv(program, UNIFORM_NORMAL_MATRIX, 1, GL_FALSE, item->normal_matrix);
+    gl.ProgramUniform4fv(program, UNIFORM_BASE_COLOR, 1, color);
+    gl.ProgramUniform3fv(program, UNIFORM_MATERIAL, 1, surface);
+    gl.ProgramUniform1i(program, UNIFORM_CULL_BACK, item->cull_back);
+    gl.ProgramUniform1i(program, UNIFORM_FLIPPED, item->flipped);
+    gl.DrawElementsBaseVertex(GL_TRIANGLES, (GLsizei)range->index_count, GL_UNSIGNED_INT,
+                              (const void *)(range->first_index * sizeof(uint32_t)),
+                              range->base_vertex);
+}
+
+static void draw_list(const Passes *passes, GLuint program, bool transparent)
+{
+    gl.UseProgram(program);
+    gl.Enable(GL_DEPTH_TEST);
+    for (size_t i = 0; i < passes->view->draw_count; i++)
+        if (passes->view->draws[i].transparent == transparent)
+            draw(passes, program, &passes->view->draws[i]);
+    gl.Disable(GL_DEPTH_TEST);
+}
+
+Result passes_opaque_geometry(Passes *passes)
+{
+    static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+    Targets *targets = &passes->targets;
+    gl.ClearNamedFramebufferfv(targets->plain_buffer, GL_COLOR, 0, no_color_all_transmitted);
+    clear_gbuffer(targets->opaque_buffer);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->opaque_buffer);
+    draw_list(passes, passes->geometry[GEOMETRY_OPAQUE], false);
+    return targets_copy_opaque_code(targets);
+}
+
+Result passes_peel_geometry(Passes *passes, int peel, uint64_t *samples)
+{
+    Targets *targets = &passes->targets;
+    int current = peel & 1;
+    clear_gbuffer(targets->peel_buffer[current]);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->peel_buffer[current]);
+    gl.BindTextureUnit(0, peel > 0 ? targets->peel_depth[1 - current] : 0);
+    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque_depth);
+    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    draw_list(passes, passes->geometry[peel > 0 ? GEOMETRY_NEXT_PEEL : GEOMETRY_FIRST_PEEL], true);
+    gl.EndQuery(GL_SAMPLES_PASSED);
+    GLuint64 count = 0;
+    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
+    *samples = count;
+    return context_check(passes->context, "peel");
+}
+
+static void light(const Passes *passes, const GLuint color[GBUFFER_TARGETS])
+{
+    for (GLuint i = 0; i < GBUFFER_TARGETS; i++)
+        gl.BindTextureUnit(i, color[i]);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, passes->targets.plain_buffer);
+    gl.UseProgram(passes->lighting);
+    gl.Enable(GL_BLEND);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl.Disable(GL_BLEND);
+}
+
+void passes_peel_lighting(Passes *passes)
+{
+    gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+    light(passes, passes->targets.peel_color);
+}
+
+void passes_opaque_lighting(Passes *passes)
+{
+    if (passes->desc->opaque_blend == OPAQUE_BLEND_SEED)
+        gl.BlendFunc(GL_DST_ALPHA, GL_ONE);
+    else
+        gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+    light(passes, passes->targets.opaque_color);
+}
+
+void passes_resolve(Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    gl.BindTextureUnit(0, targets->accum);
+    gl.BindTextureUnit(1, targets->opaque_color[GBUFFER_DIFFUSE]);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->resolve_buffer);
+    gl.UseProgram(passes->resolve);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}

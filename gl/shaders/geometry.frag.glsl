@@ -1,0 +1,78 @@
+// Geometry pass: one fragment into the G-buffer.
+//
+// FACED          normals are turned to the viewer
+// TRANSPARENT    compare with the opaque depth
+// NEXT_PEEL      compare with the previous peel's depth as well
+// TEST_RAW       compare gl_FragCoord.z itself instead of its stored value
+// DEPTH_24       depth is stored in 24 bits
+
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+
+layout(location = 3) uniform vec4 base_color; // alpha 1 unless blended
+layout(location = 4) uniform vec3 material;   // roughness, metallic, occlusion
+layout(location = 5) uniform bool cull_back;
+layout(location = 6) uniform bool flipped;    // the model matrix mirrors
+
+layout(location = 0) out vec4 out_normal;
+layout(location = 1) out vec4 out_position;
+layout(location = 2) out vec4 out_diffuse;
+layout(location = 3) out vec4 out_material;
+
+#ifdef TRANSPARENT
+layout(binding = 0) uniform sampler2D previous_depth;
+#if defined(DEPTH_24) && !defined(TEST_RAW)
+// The fetched values of the two greatest 24-bit depths are both 1, so the integers are compared.
+layout(binding = 1) uniform usampler2D opaque_depth;
+#else
+layout(binding = 1) uniform sampler2D opaque_depth;
+#endif
+
+bool is_peeled_or_hidden()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    precise float z = gl_FragCoord.z;
+#ifndef TEST_RAW
+    // As the depth buffer stores it; NaN becomes 1.
+    z = z < 1.0 ? z : 1.0;
+    z = z > 0.0 ? z : 0.0;
+#ifdef DEPTH_24
+    precise float scaled = z * 16777215.0;
+    precise float code = roundEven(scaled);
+    if (uint(code) >= texelFetch(opaque_depth, pixel, 0).r)
+        return true;
+    z = code * (1.0 / 16777215.0); // what a fetch of the stored depth gives
+#endif
+#endif
+#if defined(TEST_RAW) || !defined(DEPTH_24)
+    if (z >= texelFetch(opaque_depth, pixel, 0).r)
+        return true;
+#endif
+#ifdef NEXT_PEEL
+    if (z <= texelFetch(previous_depth, pixel, 0).r)
+        return true;
+#endif
+    return false;
+}
+#endif
+
+void main()
+{
+    bool front = gl_FrontFacing != flipped;
+    if (cull_back && !front)
+        discard;
+#ifdef TRANSPARENT
+    if (is_peeled_or_hidden())
+        discard;
+#endif
+    precise float length2 = max(dot(v_normal, v_normal), TINY);
+    precise vec3 normal = v_normal * inversesqrt(length2);
+#ifdef FACED
+    if (!front)
+        normal = -normal;
+#endif
+    out_normal = vec4(normal, 0.0);
+    out_position = vec4(v_position, 1.0);
+    out_diffuse = base_color;
+    out_material = vec4(material, 0.0);
+}

@@ -1,0 +1,89 @@
+// Lighting pass: shades one stored fragment; the result is premultiplied and blended.
+// The formula and its order of operations: frame/shading.h.
+//
+// LIGHT_COUNT      number of lights
+// LIGHTS_STORAGE   they do not fit a uniform block
+
+layout(binding = 0) uniform sampler2D normal_buffer;
+layout(binding = 1) uniform sampler2D position_buffer;
+layout(binding = 2) uniform sampler2D diffuse_buffer;
+layout(binding = 3) uniform sampler2D material_buffer;
+
+layout(location = 0) uniform vec3 ambient;
+
+layout(location = 0) out vec4 source;
+
+#if LIGHT_COUNT > 0
+struct Light {
+    vec4 position; // view space
+    vec4 color;
+    vec4 attenuation; // constant, linear, quadratic
+};
+#ifdef LIGHTS_STORAGE
+layout(std430, binding = 0) readonly buffer Lights
+#else
+layout(std140, binding = 0) uniform Lights
+#endif
+{
+    Light lights[LIGHT_COUNT];
+};
+#endif
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 diffuse_alpha = texelFetch(diffuse_buffer, pixel, 0);
+    if (diffuse_alpha.a <= ALPHA_TEST)
+        discard;
+    vec3 N = texelFetch(normal_buffer, pixel, 0).xyz;
+    vec3 P = texelFetch(position_buffer, pixel, 0).xyz;
+    vec3 material = texelFetch(material_buffer, pixel, 0).xyz;
+    vec3 diffuse = diffuse_alpha.rgb;
+    float metallic = material.y;
+
+    precise float position2 = max(dot(P, P), TINY);
+    precise vec3 V = (-P) * inversesqrt(position2);
+    precise float r = min(max(material.x, ROUGHNESS_MIN), 1.0);
+    precise float a = r * r;
+    precise float a2 = a * a;
+    precise float am = a2 - 1.0;
+    precise float k1 = r + 1.0;
+    precise float k = k1 * k1 * 0.125;
+    precise float km = 1.0 - k;
+    precise float NV = max(dot(N, V), 0.0);
+    precise float GV = NV / (NV * km + k);
+    precise float NV4 = 4.0 * NV;
+    precise vec3 F0 = mix(vec3(0.04), diffuse, vec3(metallic));
+    precise vec3 Fm = 1.0 - F0;
+    precise vec3 lambert = diffuse * (1.0 - metallic) / PI;
+    precise vec3 sum = vec3(0.0);
+#if LIGHT_COUNT > 0
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 attenuation = lights[i].attenuation.xyz;
+        precise vec3 D = lights[i].position.xyz - P;
+        precise float d2 = max(dot(D, D), DISTANCE2_MIN);
+        precise float d = sqrt(d2);
+        precise vec3 L = D * (1.0 / d);
+        precise vec3 h = V + L;
+        precise float h2 = max(dot(h, h), TINY);
+        precise vec3 H = h * inversesqrt(h2);
+        precise float NL = max(dot(N, L), 0.0);
+        precise float NH = max(dot(N, H), 0.0);
+        precise float HV = max(dot(H, V), 0.0);
+        precise float den = NH * NH * am + 1.0;
+        precise float dist = a2 / (PI * den * den);
+        precise float GL = NL / (NL * km + k);
+        precise float x = clamp(1.0 - HV, 0.0, 1.0);
+        precise float x2 = x * x;
+        precise float x5 = x2 * x2 * x;
+        precise vec3 F = F0 + Fm * x5;
+        precise float s = dist * (GV * GL) / (NV4 * NL + SPECULAR_BIAS);
+        precise float att = 1.0 / (attenuation.x + attenuation.y * d + attenuation.z * d2);
+        precise vec3 radiance = lights[i].color.rgb * att * NL;
+        sum = sum + ((1.0 - F) * lambert + F * s) * radiance;
+    }
+#endif
+    precise vec3 color = sum + ambient * diffuse * material.z;
+    precise vec3 premultiplied = color * diffuse_alpha.a;
+    source = vec4(premultiplied, diffuse_alpha.a);
+}

@@ -1,0 +1,97 @@
+#include "ref/pipeline/buffers.h"
+
+GBufferLayout gbuffer_layout(GBufferFormat format)
+{
+    if (format == GBUFFER_SEED)
+        return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA8, FORMAT_RGBA8};
+    return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F};
+}
+
+Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth, GBuffer *out)
+{
+    GBufferLayout layout = gbuffer_layout(format);
+    *out = (GBuffer){0};
+    struct {
+        Image *image;
+        PixelFormat format;
+    } images[] = {
+        {&out->depth, depth},
+        {&out->normal, layout.normal},
+        {&out->position, layout.position},
+        {&out->diffuse, layout.diffuse},
+        {&out->material, layout.material},
+        {&out->primitive, FORMAT_R32UI},
+    };
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
+        Result result = image_create(width, height, images[i].format, images[i].image);
+        if (result != RESULT_OK) {
+            gbuffer_free(out);
+            return result;
+        }
+    }
+    gbuffer_clear(out);
+    return RESULT_OK;
+}
+
+void gbuffer_free(GBuffer *buffers)
+{
+    image_free(&buffers->depth);
+    image_free(&buffers->normal);
+    image_free(&buffers->position);
+    image_free(&buffers->diffuse);
+    image_free(&buffers->material);
+    image_free(&buffers->primitive);
+}
+
+static void clear_colour(Image *image)
+{
+    memset(image->pixels, 0,
+           (size_t)image->width * (size_t)image->height * format_pixel_bytes(image->format));
+}
+
+void gbuffer_clear(GBuffer *buffers)
+{
+    clear_colour(&buffers->normal);
+    clear_colour(&buffers->position);
+    clear_colour(&buffers->diffuse);
+    clear_colour(&buffers->material);
+    size_t pixels = (size_t)buffers->depth.width * (size_t)buffers->depth.height;
+    uint32_t far = depth_key_far(buffers->depth.format);
+    uint32_t *depth = buffers->depth.pixels;
+    for (size_t i = 0; i < pixels; i++)
+        depth[i] = far;
+    memset(buffers->primitive.pixels, 0xff, pixels * sizeof(uint32_t));
+}
+
+void gbuffer_store(GBuffer *buffers, int x, int y, const Texel *texel)
+{
+    format_store(buffers->normal.format, texel->normal, image_pixel(&buffers->normal, x, y));
+    format_store(buffers->position.format, texel->position, image_pixel(&buffers->position, x, y));
+    format_store(buffers->diffuse.format, texel->diffuse, image_pixel(&buffers->diffuse, x, y));
+    format_store(buffers->material.format, texel->material, image_pixel(&buffers->material, x, y));
+}
+
+void gbuffer_load(const GBuffer *buffers, int x, int y, Texel *out)
+{
+    format_fetch(buffers->normal.format, image_pixel(&buffers->normal, x, y), out->normal);
+    format_fetch(buffers->position.format, image_pixel(&buffers->position, x, y), out->position);
+    format_fetch(buffers->diffuse.format, image_pixel(&buffers->diffuse, x, y), out->diffuse);
+    format_fetch(buffers->material.format, image_pixel(&buffers->material, x, y), out->material);
+}
+
+static void quantise(PixelFormat format, float value[4])
+{
+    if (format == FORMAT_RGBA32F)
+        return;
+    unsigned char pixel[16];
+    format_store(format, value, pixel);
+    format_fetch(format, pixel, value);
+}
+
+void texel_quantise(const GBufferLayout *layout, Texel *texel)
+{
+    quantise(layout->normal, texel->normal);
+    quantise(layout->position, texel->position);
+    quantise(layout->diffuse, texel->diffuse);
+    quantise(layout->material, texel->material);
+}

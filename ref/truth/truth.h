@@ -1,11 +1,31 @@
-/* The ground truth: every fragment, sorted by exact depth, shaded and composited in double. */
+/* The ground truth: every fragment, sorted by exact depth, shaded and composited in double.
+ *
+ * Shares its inputs with the pipelines (the scene's floats, the view's float matrices and lights)
+ * and none of their rasterizing, sorting, shading or blending. Coverage follows the GL contract
+ * (clipped pieces snapped to 1/256 pixel); depth and attributes are those of the exact, unclipped,
+ * unsnapped triangle at the pixel's centre. No pass limit, no stored formats: desc's method,
+ * passes, depth, accum, gbuffer, peel_test, opaque_blend and unfused change nothing.
+ *
+ * It does not resolve depths closer than double precision: surfaces that coincide only in exact
+ * arithmetic, not in double, come in the order of their rounding (near 1e-16 of window depth).
+ * Source: Carpenter, "The A-buffer, an Antialiased Hidden Surface Method", SIGGRAPH 1984. */
 #ifndef PEEL_REF_TRUTH_H
 #define PEEL_REF_TRUTH_H
 
 #include "frame/frame.h"
 
 /* See Renderer. The trace receives opaque.primitive and peel.K.primitive by rectangles (steps 0
- * and K + 1), nothing else; a layer that a rectangle does not have is not sent for it. */
+ * and K + 1), nothing else; a layer that a rectangle does not have is not sent for it. The same
+ * bits for any number of threads.
+ *
+ * Memory: the triangles' corners, the list of triangles of each tile, the images, and one tile's
+ * fragments per worker; NO_MEMORY naming the need when that exceeds desc->max_memory.
+ *
+ * out->layers.coverage_differs counts (triangle, pixel) pairs where snapped coverage, which makes
+ * the picture, and unsnapped coverage (the exact triangle within the view volume, same tie rule)
+ * disagree, and the fragment matters where it exists: it is transparent and in front of the
+ * nearest opaque fragment, or is that fragment. A pixel that snapping hands from one triangle to
+ * its neighbour counts twice. */
 Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out);
 
 #endif

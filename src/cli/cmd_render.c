@@ -1,0 +1,161 @@
+/* peel render: one renderer to an image file, and every buffer to a trace. */
+#include "base/memory.h"
+#include "cli/bind.h"
+#include "cli/options.h"
+#include "compare/store.h"
+#include "image/exr.h"
+#include "image/png.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct RenderCommand {
+    RenderOptions render;
+    int renderer;
+    const char *output, *trace;
+} RenderCommand;
+
+enum { KEY_WITH = 0x200, KEY_TRACE };
+
+static const struct argp_option command_options[] = {
+    {"with", KEY_WITH, "NAME", 0, "Renderer: ref (default), gl or truth", 0},
+    {"output", 'o', "FILE", 0,
+     "PNG: display-transformed; EXR: linear R, G, B over the background, A = coverage", 0},
+    {"trace", KEY_TRACE, "FILE", 0, "Every buffer of every step as one multi-part EXR", 0},
+    {0},
+};
+
+static bool has_extension(const char *path, const char *extension)
+{
+    size_t length = strlen(path), wanted = strlen(extension);
+    return length > wanted && strcmp(path + length - wanted, extension) == 0;
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    RenderCommand *command = state->input;
+    switch (key) {
+    case KEY_WITH:
+        command->renderer = bind_find_renderer(argument);
+        return command->renderer >= 0
+                   ? 0
+                   : options_error("--with %s: expected ref, gl or truth", argument);
+    case 'o':
+        command->output = argument;
+        return has_extension(argument, ".png") || has_extension(argument, ".exr")
+                   ? 0
+                   : options_error("-o %s: expected a name ending in .png or .exr", argument);
+    case KEY_TRACE:
+        command->trace = argument;
+        return has_extension(argument, ".exr")
+                   ? 0
+                   : options_error("--trace %s: expected a name ending in .exr", argument);
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &command->render;
+        return 0;
+    case ARGP_KEY_SUCCESS:
+        return command->output || command->trace ? 0
+                                                 : options_error("render: expected -o FILE");
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&options_render_argp, 0, NULL, 1}, {0}};
+static const struct argp command_argp = {
+    command_options, parse, "SCENE -o FILE",
+    "Renders SCENE (.gltf, .glb, or the name of a built-in scene) with one renderer.", children,
+    NULL, NULL};
+
+static Result write_parts(const TraceStore *store, ExrWriter *writer)
+{
+    for (int i = 0; i < store_count(store); i++) {
+        Image image;
+        Result result = store_image(store, i, &image);
+        if (result == RESULT_OK) {
+            result = exr_writer_part(writer, &image);
+            image_free(&image);
+        }
+        if (result != RESULT_OK)
+            return result;
+    }
+    return RESULT_OK;
+}
+
+static Result write_trace(const TraceStore *store, const char *path)
+{
+    int count = store_count(store);
+    ExrPart *parts = memory_array((size_t)count, sizeof *parts);
+    if (!parts)
+        return RESULT_NO_MEMORY;
+    for (int i = 0; i < count; i++) {
+        const StoredBuffer *buffer = store_buffer(store, i);
+        parts[i] = (ExrPart){buffer->name, buffer->format, buffer->width, buffer->height};
+    }
+    ExrWriter *writer;
+    Result result = exr_writer_open(path, parts, count, &writer);
+    if (result == RESULT_OK) {
+        result = write_parts(store, writer);
+        Result closed = exr_writer_close(writer, result == RESULT_OK);
+        result = result == RESULT_OK ? closed : result;
+    }
+    free(parts);
+    return result;
+}
+
+static Result render(const RenderCommand *command, const Scene *scene, TraceStore *store,
+                     Frame *out)
+{
+    const RenderDesc *desc = &command->render.desc;
+    Result result = bind_renderers[command->renderer](scene, desc,
+                                                      store ? store_sink(store) : NULL, out);
+    if (result != RESULT_OK)
+        return result;
+    if (command->output)
+        result = has_extension(command->output, ".png")
+                     ? png_write(&out->display, command->output)
+                     : exr_write(&out->final, command->output);
+    if (result == RESULT_OK && store)
+        result = write_trace(store, command->trace);
+    if (result != RESULT_OK)
+        frame_free(out);
+    return result;
+}
+
+static void print_summary(const RenderCommand *command, const Frame *frame)
+{
+    printf("%s: %dx%d, %d peels, %.1f ms (cpu %.1f ms, %d threads)\n",
+           threeway_renderer_name(command->renderer), frame->final.width, frame->final.height,
+           frame->peels, frame->time_ms, frame->cpu_ms, frame->threads);
+    if (frame->residual_pixels)
+        printf("pass limit: transmittance up to %.6g remains in front of %llu fragments in "
+               "%llu pixels\n",
+               frame->residual_max, (unsigned long long)frame->layers.lost_to_pass_limit,
+               (unsigned long long)frame->residual_pixels);
+}
+
+int cmd_render(int argc, char **argv)
+{
+    RenderCommand command = {.render = options_default()};
+    int code = options_parse(&command_argp, argc, argv, &command);
+    if (code)
+        return code;
+    Scene scene;
+    Frame frame;
+    TraceStore *store = NULL;
+    Result result = options_load_scene(&command.render, &scene);
+    if (result != RESULT_OK)
+        return options_fail(result);
+    if (command.trace)
+        result = store_create(0, &store);
+    if (result == RESULT_OK)
+        result = render(&command, &scene, store, &frame);
+    if (result == RESULT_OK) {
+        print_summary(&command, &frame);
+        frame_free(&frame);
+    }
+    store_destroy(store);
+    scene_free(&scene);
+    return result == RESULT_OK ? EXIT_AGREE : options_fail(result);
+}

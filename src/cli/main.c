@@ -1,0 +1,63 @@
+/* peel: the command line. One file per command; see bind.h. */
+#include "cli/bind.h"
+#include "cli/options.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Command {
+    const char *name;
+    const char *summary;
+    int (*run)(int argc, char **argv);
+} Command;
+
+static const Command commands[] = {
+    {"render", "one renderer to PNG or EXR, with --trace every buffer", cmd_render},
+    {"compare", "all three renderers; table, JSON, report", cmd_compare},
+    {"scenes", "list the built-in scenes, or write one as glTF", cmd_scenes},
+};
+
+static void print_help(FILE *out)
+{
+    fprintf(out,
+            "Usage: peel COMMAND [OPTION...] [ARGUMENT...]\n"
+            "The reference for order-independent transparency by depth peeling.\n\n");
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
+        fprintf(out, "  peel %-9s %s\n", commands[i].name, commands[i].summary);
+    fprintf(out,
+            "\n'peel COMMAND --help' shows a command's options.\n\n"
+            "Exit codes: 0 agree or done, 2 differ beyond the threshold, 3 sizes differ,\n"
+            "4 bad input, usage or environment (one line on stderr says what).\n");
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        fprintf(stderr, "peel: no command given; see 'peel --help'\n");
+        return EXIT_BAD_INPUT;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
+        print_help(stdout);
+        return EXIT_AGREE;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        printf("peel %s\n", PEEL_VERSION);
+        return EXIT_AGREE;
+    }
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        if (strcmp(argv[1], commands[i].name) != 0)
+            continue;
+        char name[32];
+        snprintf(name, sizeof name, "peel %s", commands[i].name);
+        argv[1] = name;
+        int code = commands[i].run(argc - 1, argv + 1);
+        if (fflush(stdout) != 0 || ferror(stdout)) {
+            fprintf(stderr, "peel: standard output: write failed\n");
+            return EXIT_BAD_INPUT;
+        }
+        return code;
+    }
+    fprintf(stderr, "peel: '%s' is no command; see 'peel --help'\n", argv[1]);
+    return EXIT_BAD_INPUT;
+}

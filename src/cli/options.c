@@ -1,0 +1,319 @@
+#include "cli/options.h"
+
+#include "frame/method.h"
+#include "scene/generate.h"
+#include "scene/gltf.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- failing ---- */
+
+static bool reported; /* a parser has printed its line */
+
+error_t options_error(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fprintf(stderr, "peel: ");
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+    reported = true;
+    return EINVAL;
+}
+
+int options_fail(Result result)
+{
+    const char *message = result_message();
+    fprintf(stderr, "peel: %s\n", *message ? message : result_text(result));
+    return EXIT_BAD_INPUT;
+}
+
+int options_parse(const struct argp *argp, int argc, char **argv, void *input)
+{
+    int index = 0;
+    /* getopt would print two lines of its own. */
+    error_t error = argp_parse(argp, argc, argv, ARGP_NO_ERRS, &index, input);
+    if (error == 0)
+        return 0;
+    if (!reported) {
+        const char *word = index > 0 && index <= argc ? argv[index - 1] : argv[argc - 1];
+        options_error("%s: '%s' is no option or argument of this command, or lacks its value; "
+                      "see '%s --help'",
+                      argv[0], word, argv[0]);
+    }
+    return EXIT_BAD_INPUT;
+}
+
+/* ---- numbers ---- */
+
+bool options_integer(const char *text, long long low, long long high, long long *out)
+{
+    char *end;
+    errno = 0;
+    long long value = strtoll(text, &end, 10);
+    if (errno || end == text || *end || value < low || value > high)
+        return false;
+    *out = value;
+    return true;
+}
+
+bool options_real(const char *text, double low, double high, double *out)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value >= low && value <= high))
+        return false;
+    *out = value;
+    return true;
+}
+
+static error_t parse_size(const char *text, RenderDesc *desc)
+{
+    char *end;
+    long width = strtol(text, &end, 10);
+    long height = *end == 'x' ? strtol(end + 1, &end, 10) : 0;
+    if (*end || width < 1 || height < 1 || width > SIZE_MAX_PIXELS || height > SIZE_MAX_PIXELS)
+        return options_error("--size %s: expected WxH, each from 1 to %d", text, SIZE_MAX_PIXELS);
+    desc->width = (int)width;
+    desc->height = (int)height;
+    return 0;
+}
+
+static error_t parse_background(const char *text, RenderOptions *options)
+{
+    int length = 0;
+    double *c = options->background;
+    if (sscanf(text, "%lf,%lf,%lf%n", &c[0], &c[1], &c[2], &length) != 3 || text[length])
+        return options_error("--background %s: expected R,G,B, linear, from 0 to 1e6", text);
+    for (int i = 0; i < 3; i++)
+        if (!(c[i] >= 0.0 && c[i] <= 1e6))
+            return options_error("--background %s: expected R,G,B, linear, from 0 to 1e6", text);
+    options->has_background = true;
+    return 0;
+}
+
+static error_t parse_memory(const char *text, RenderDesc *desc)
+{
+    char *end;
+    errno = 0;
+    unsigned long long bytes = strtoull(text, &end, 10);
+    int shift = *end == 'K' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
+    if (errno || end == text || *text == '-' || bytes == 0 || end[shift != 0] ||
+        bytes > (SIZE_MAX >> shift))
+        return options_error("--max-memory %s: expected bytes, or a number with K, M or G", text);
+    desc->max_memory = (size_t)bytes << shift;
+    return 0;
+}
+
+static error_t parse_count(const char *name, const char *text, int low, int high, int *out)
+{
+    long long value;
+    if (!options_integer(text, low, high, &value))
+        return options_error("%s %s: expected a whole number from %d to %d", name, text, low,
+                             high);
+    *out = (int)value;
+    return 0;
+}
+
+static error_t parse_real(const char *name, const char *text, double low, double high, double *out)
+{
+    if (!options_real(text, low, high, out))
+        return options_error("%s %s: expected a number from %g to %g", name, text, low, high);
+    return 0;
+}
+
+/* ---- the options ---- */
+
+enum {
+    KEY_SIZE = 0x100,
+    KEY_CAMERA,
+    KEY_LIGHTS,
+    KEY_TIME,
+    KEY_OPACITY,
+    KEY_BACKGROUND,
+    KEY_METHOD,
+    KEY_PASSES,
+    KEY_PROFILE,
+    KEY_FMA,
+    KEY_THREADS,
+    KEY_MEMORY,
+};
+
+static const struct argp_option render_options[] = {
+    {0, 0, 0, 0, "Rendering:", 1},
+    {"size", KEY_SIZE, "WxH", 0, "Image size in pixels (default 1280x720)", 1},
+    {"camera", KEY_CAMERA, "NAME|INDEX", 0, "Camera of the scene (default the first)", 1},
+    {"lights", KEY_LIGHTS, "N", 0, "The scene's first N lights (default all)", 1},
+    {"time", KEY_TIME, "SECONDS", 0, "Turns the lights (default 0)", 1},
+    {"opacity", KEY_OPACITY, "A", 0, "Opacity 0 to 1 of every material; below 1 all are peeled", 1},
+    {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)",
+     1},
+    {"method", KEY_METHOD, "NAME", 0, "Transparency method (default peel)", 1},
+    {"passes", KEY_PASSES, "N|auto", 0,
+     "At most N peels; auto (default) until a peel yields no fragment", 1},
+    {"profile", KEY_PROFILE, "NAME", 0,
+     "default, or seed: the number formats and choices of the original program", 1},
+    {"fma", KEY_FMA, "on|off", 0,
+     "Fused multiply-add in fixed-function arithmetic (default as the GL driver does)", 1},
+    {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
+    {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
+    {0},
+};
+
+static error_t parse_passes(const char *text, RenderDesc *desc)
+{
+    desc->passes = 0;
+    if (strcmp(text, "auto") == 0)
+        return 0;
+    long long passes;
+    if (!options_integer(text, 1, PASSES_MAX, &passes))
+        return options_error("--passes %s: expected auto or 1 to %d", text, PASSES_MAX);
+    desc->passes = (int)passes;
+    return 0;
+}
+
+static error_t parse_profile(const char *text, RenderOptions *options)
+{
+    options->seed_profile = strcmp(text, "seed") == 0;
+    if (!options->seed_profile && strcmp(text, "default") != 0)
+        return options_error("--profile %s: expected default or seed", text);
+    return 0;
+}
+
+static error_t parse_fma(const char *text, RenderOptions *options)
+{
+    options->fma = strcmp(text, "on") == 0 ? FMA_ON : FMA_OFF;
+    if (options->fma == FMA_OFF && strcmp(text, "off") != 0)
+        return options_error("--fma %s: expected on or off", text);
+    return 0;
+}
+
+static error_t parse_method(const char *text, RenderDesc *desc)
+{
+    const MethodInfo *method = method_find(text);
+    if (!method)
+        return options_error("--method %s: there is no such method", text);
+    desc->method = method->id;
+    return 0;
+}
+
+static error_t parse_lights(const char *text, RenderDesc *desc)
+{
+    error_t error = parse_count("--lights", text, 0, 1 << 20, &desc->lights);
+    if (desc->lights == 0)
+        desc->lights = -1; /* none: 0 means all in a RenderDesc */
+    return error;
+}
+
+static error_t parse_render(int key, char *argument, struct argp_state *state)
+{
+    RenderOptions *options = state->input;
+    RenderDesc *desc = &options->desc;
+    switch (key) {
+    case KEY_SIZE:
+        return parse_size(argument, desc);
+    case KEY_CAMERA:
+        options->camera = argument;
+        return 0;
+    case KEY_LIGHTS:
+        return parse_lights(argument, desc);
+    case KEY_TIME:
+        return parse_real("--time", argument, -1e6, 1e6, &desc->time);
+    case KEY_OPACITY:
+        options->has_opacity = true;
+        return parse_real("--opacity", argument, 0.0, 1.0, &options->opacity);
+    case KEY_BACKGROUND:
+        return parse_background(argument, options);
+    case KEY_METHOD:
+        return parse_method(argument, desc);
+    case KEY_PASSES:
+        return parse_passes(argument, desc);
+    case KEY_PROFILE:
+        return parse_profile(argument, options);
+    case KEY_FMA:
+        return parse_fma(argument, options);
+    case KEY_THREADS:
+        return parse_count("--threads", argument, 1, 256, &desc->threads);
+    case KEY_MEMORY:
+        return parse_memory(argument, desc);
+    case ARGP_KEY_ARG:
+        if (options->scene_path)
+            return options_error("'%s': expected one scene, already given as '%s'", argument,
+                                 options->scene_path);
+        options->scene_path = argument;
+        return 0;
+    case ARGP_KEY_SUCCESS:
+        if (!options->scene_path)
+            return options_error("no scene given; expected a .gltf or .glb file or the name of a "
+                                 "built-in scene");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp options_render_argp = {render_options, parse_render, NULL, NULL,
+                                         NULL,           NULL,         NULL};
+
+RenderOptions options_default(void)
+{
+    return (RenderOptions){.desc = {.width = 1280, .height = 720}};
+}
+
+/* ---- the scene ---- */
+
+static Result load(const char *path, Scene *out)
+{
+    const BuiltinScene *builtin = generate_find(path);
+    if (builtin && access(path, F_OK) != 0)
+        return builtin->generate(out);
+    return gltf_load(path, out);
+}
+
+static Result choose_camera(const char *text, const Scene *scene, int *out)
+{
+    for (size_t i = 0; i < scene->camera_count; i++)
+        if (strcmp(scene->cameras[i].name, text) == 0) {
+            *out = (int)i;
+            return RESULT_OK;
+        }
+    long long index;
+    if (options_integer(text, 0, (long long)scene->camera_count - 1, &index)) {
+        *out = (int)index;
+        return RESULT_OK;
+    }
+    return result_fail(RESULT_BAD_INPUT,
+                       "--camera %s: the scene has no such camera, expected a name or 0 to %zu",
+                       text, scene->camera_count - 1);
+}
+
+Result options_load_scene(RenderOptions *options, Scene *out)
+{
+    Result result = load(options->scene_path, out);
+    if (result != RESULT_OK)
+        return result;
+    if (options->camera)
+        result = choose_camera(options->camera, out, &options->desc.camera);
+    if (result != RESULT_OK) {
+        scene_free(out);
+        return result;
+    }
+    if (options->has_opacity)
+        scene_override_opacity(out, (float)options->opacity);
+    for (int i = 0; options->has_background && i < 3; i++)
+        out->background[i] = (float)options->background[i];
+    if (options->seed_profile)
+        render_desc_seed_profile(&options->desc);
+    options->desc.unfused = options->fma == FMA_OFF;
+    /* Mesa reads it at its first call, once per process: hides FMA (and AVX) from its compiler. */
+    if (options->fma == FMA_OFF)
+        setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 1);
+    return RESULT_OK;
+}

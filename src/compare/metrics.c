@@ -1,0 +1,149 @@
+#include "compare/metrics.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One channel value as stored: its bits, and how far two of them are apart. */
+static uint32_t channel_bits(const FormatInfo *info, const unsigned char *pixel, int channel)
+{
+    const unsigned char *at = pixel + channel * info->channel_bytes;
+    uint32_t bits = 0;
+    memcpy(&bits, at, (size_t)info->channel_bytes); /* little-endian, as PixelFormat is stored */
+    return bits;
+}
+
+static float as_float(uint32_t bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static uint32_t channel_ulp(FormatKind kind, uint32_t a, uint32_t b)
+{
+    if (kind == KIND_FLOAT)
+        return ulp_distance(as_float(a), as_float(b));
+    if (kind == KIND_HALF)
+        return ulp_distance_half((uint16_t)a, (uint16_t)b);
+    return a > b ? a - b : b - a;
+}
+
+static void fold_value(BufferMetrics *metrics, PixelFormat format, const unsigned char *a,
+                       const unsigned char *b, int x, int y, int channel)
+{
+    const FormatInfo *info = format_info(format);
+    uint32_t ulp = channel_ulp(info->kind, channel_bits(info, a, channel),
+                               channel_bits(info, b, channel));
+    if (ulp == 0)
+        return;
+    metrics->differing++;
+    if (ulp > metrics->max_ulp)
+        metrics->max_ulp = ulp;
+    double difference = fabs((double)format_channel(format, a, channel) -
+                             (double)format_channel(format, b, channel));
+    if (difference > metrics->max_abs) /* false for NaN, which max_ulp shows */
+        metrics->max_abs = difference;
+    if (!metrics->has_first) {
+        metrics->has_first = true;
+        metrics->first[0] = x;
+        metrics->first[1] = y;
+        metrics->first[2] = channel;
+    }
+}
+
+void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, int width,
+                    int height, const void *a, size_t a_row_bytes, const void *b,
+                    size_t b_row_bytes)
+{
+    int channels = format_info(format)->channels;
+    size_t pixel_bytes = format_pixel_bytes(format), row_bytes = (size_t)width * pixel_bytes;
+    metrics->values += (uint64_t)width * (uint64_t)height * (uint64_t)channels;
+    for (int row = 0; row < height; row++) {
+        const unsigned char *row_a = (const unsigned char *)a + (size_t)row * a_row_bytes;
+        const unsigned char *row_b = (const unsigned char *)b + (size_t)row * b_row_bytes;
+        if (memcmp(row_a, row_b, row_bytes) == 0)
+            continue;
+        for (int column = 0; column < width; column++)
+            for (int channel = 0; channel < channels; channel++)
+                fold_value(metrics, format, row_a + (size_t)column * pixel_bytes,
+                           row_b + (size_t)column * pixel_bytes, x + column, y + row, channel);
+    }
+}
+
+static bool is_finite4(const float *p)
+{
+    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]) && isfinite(p[3]);
+}
+
+void metrics_final(const Image *a, const Image *b, FinalMetrics *out)
+{
+    *out = (FinalMetrics){.pixels = (uint64_t)a->width * (uint64_t)a->height};
+    const float *pa = a->pixels, *pb = b->pixels;
+    double sum = 0.0, sum2 = 0.0;
+    for (uint64_t i = 0; i < out->pixels; i++, pa += 4, pb += 4) {
+        bool differs = false;
+        for (int c = 0; c < 4; c++) {
+            uint32_t ulp = ulp_distance(pa[c], pb[c]);
+            differs |= ulp != 0;
+            if (ulp > out->max_ulp)
+                out->max_ulp = ulp;
+        }
+        out->differing += differs;
+        if (!is_finite4(pa) || !is_finite4(pb)) {
+            out->nonfinite++;
+            continue;
+        }
+        for (int c = 0; differs && c < 4; c++) {
+            double d = fabs((double)pa[c] - (double)pb[c]);
+            sum += d;
+            sum2 += d * d;
+            if (d > out->max_abs)
+                out->max_abs = d;
+        }
+    }
+    double values = 4.0 * (double)(out->pixels - out->nonfinite);
+    if (values > 0.0) {
+        out->mean_abs = sum / values;
+        out->rmse = sqrt(sum2 / values);
+    }
+    out->psnr = out->rmse > 0.0 ? -20.0 * log10(out->rmse) : INFINITY;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *mask,
+                          UnaffectedMetrics *out)
+{
+    size_t pixels = (size_t)a->width * (size_t)a->height;
+    *out = (UnaffectedMetrics){0};
+    double *relative = memory_array(pixels, sizeof *relative);
+    if (!relative)
+        return RESULT_NO_MEMORY;
+    const float *pa = a->pixels, *pb = b->pixels;
+    for (size_t i = 0; i < pixels; i++) {
+        if (!mask[i] || !is_finite4(pa + 4 * i) || !is_finite4(pb + 4 * i))
+            continue;
+        double worst = 0.0;
+        for (int c = 0; c < 4; c++) {
+            double d = fabs((double)pa[4 * i + (size_t)c] - (double)pb[4 * i + (size_t)c]);
+            out->max_abs = d > out->max_abs ? d : out->max_abs;
+            worst = fmax(worst, d / fmax(1.0, fabs((double)pb[4 * i + (size_t)c])));
+        }
+        relative[out->pixels++] = worst;
+    }
+    if (out->pixels > 0) {
+        qsort(relative, out->pixels, sizeof *relative, compare_doubles);
+        out->max_rel = relative[out->pixels - 1];
+        /* Nearest rank: the least value that at least 99 % of the pixels do not exceed. */
+        out->p99_rel = relative[(out->pixels * 99 + 99) / 100 - 1];
+    }
+    free(relative);
+    return RESULT_OK;
+}

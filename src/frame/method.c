@@ -1,0 +1,22 @@
+#include "frame/method.h"
+
+#include <string.h>
+
+static const MethodInfo methods[METHOD_COUNT] = {
+    [METHOD_PEEL] = {METHOD_PEEL, "peel",
+                     "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
+                     "deferred depth peeling, front to back", true},
+};
+
+const MethodInfo *method_info(MethodId id)
+{
+    return &methods[id];
+}
+
+const MethodInfo *method_find(const char *name)
+{
+    for (int i = 0; i < METHOD_COUNT; i++)
+        if (strcmp(methods[i].name, name) == 0)
+            return &methods[i];
+    return NULL;
+}

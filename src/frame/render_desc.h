@@ -24,6 +24,7 @@ typedef enum RefPath { REF_PATH_AUTO = 0, REF_PATH_DEFINITION, REF_PATH_TILE } R
 
 enum { SIZE_MAX_PIXELS = 16384 }; /* per side */
 enum { PASSES_MAX = 4096 };
+#define RENDER_MEMORY_DEFAULT ((size_t)4 << 30) /* bytes */
 
 typedef struct RenderDesc {
     int width, height; /* pixels, 1 … SIZE_MAX_PIXELS */

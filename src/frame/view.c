@@ -1,0 +1,148 @@
+#include "frame/view.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The original leaves out entities that cannot be seen at all; a masked material without texture
+ * is all there or not there at all. */
+static bool is_visible(const Material *material)
+{
+    float alpha = material->base_color[3];
+    switch (material->alpha_mode) {
+    case ALPHA_OPAQUE:
+        return true;
+    case ALPHA_MASK:
+        return alpha >= material->alpha_cutoff;
+    case ALPHA_BLEND:
+        break;
+    }
+    return alpha >= 1e-4f;
+}
+
+static bool culls_back(CullMode mode, const Material *material, bool transparent)
+{
+    switch (mode) {
+    case CULL_GLTF:
+        return !material->double_sided;
+    case CULL_SEED:
+        return !transparent;
+    case CULL_NONE:
+        break;
+    }
+    return false;
+}
+
+static Draw make_draw(const Scene *scene, uint32_t index, const Matrix *view, CullMode cull)
+{
+    const Instance *instance = &scene->instances[index];
+    const Material *material = &scene->materials[instance->material];
+    Matrix model_view = matrix_multiply(view, &instance->world);
+    double normal[9];
+    matrix_normal(&model_view, normal);
+
+    Draw draw = {.instance = index, .mesh = instance->mesh, .material = instance->material};
+    draw.transparent = material->alpha_mode == ALPHA_BLEND;
+    draw.flipped = matrix_determinant3(&model_view) < 0.0;
+    draw.cull_back = culls_back(cull, material, draw.transparent);
+    matrix_round(&model_view, draw.model_view);
+    for (int i = 0; i < 9; i++)
+        draw.normal_matrix[i] = (float)normal[i];
+    return draw;
+}
+
+static ViewLight make_light(const Light *light, const Matrix *world_to_view)
+{
+    ViewLight out;
+    double position[3];
+    matrix_point(world_to_view, light->position, position);
+    for (int i = 0; i < 3; i++) {
+        out.position[i] = (float)position[i];
+        out.color[i] = light->color[i];
+        out.attenuation[i] = light->attenuation[i];
+    }
+    return out;
+}
+
+static Result check(const Scene *scene, const RenderDesc *desc)
+{
+    if (desc->width < 1 || desc->height < 1 || desc->width > SIZE_MAX_PIXELS ||
+        desc->height > SIZE_MAX_PIXELS)
+        return result_fail(RESULT_BAD_INPUT, "size %d×%d: expected 1 to %d pixels a side",
+                           desc->width, desc->height, SIZE_MAX_PIXELS);
+    if (desc->passes < 0 || desc->passes > PASSES_MAX)
+        return result_fail(RESULT_BAD_INPUT, "%d passes: expected 0 (auto) to %d", desc->passes,
+                           PASSES_MAX);
+    if (desc->camera < 0 || (size_t)desc->camera >= scene->camera_count)
+        return result_fail(RESULT_BAD_INPUT, "camera %d: the scene has %zu", desc->camera,
+                           scene->camera_count);
+    if (!isfinite(desc->time) || fabs(desc->time) > 1e6)
+        return result_fail(RESULT_BAD_INPUT, "time %g: expected at most 1e6 seconds", desc->time);
+    if (scene_triangle_count(scene) >= UINT32_MAX)
+        return result_fail(RESULT_BAD_INPUT, "more than 2^32 − 2 triangles");
+    return RESULT_OK;
+}
+
+static void add_draws(const Scene *scene, CullMode cull, const Matrix *view, View *out)
+{
+    uint32_t primitive = 0;
+    for (size_t i = 0; i < scene->instance_count; i++) {
+        const Instance *instance = &scene->instances[i];
+        if (is_visible(&scene->materials[instance->material])) {
+            Draw *draw = &out->draws[out->draw_count++];
+            *draw = make_draw(scene, (uint32_t)i, view, cull);
+            draw->first_primitive = primitive;
+        }
+        primitive += scene->meshes[instance->mesh].triangle_count;
+    }
+}
+
+static void add_lights(const Scene *scene, const RenderDesc *desc, const Matrix *view, View *out)
+{
+    double degrees = fmod(scene->light_degrees_per_second * desc->time, 360.0);
+    Matrix turn = matrix_rotate_y(degrees * (3.14159265358979323846 / 180.0));
+    Matrix world_to_view = matrix_multiply(view, &turn);
+    out->light_count = scene->light_count;
+    if (desc->lights < 0)
+        out->light_count = 0;
+    else if (desc->lights > 0 && (size_t)desc->lights < scene->light_count)
+        out->light_count = (size_t)desc->lights;
+    for (size_t i = 0; i < out->light_count; i++)
+        out->lights[i] = make_light(&scene->lights[i], &world_to_view);
+}
+
+Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
+{
+    *out = (View){.width = desc->width, .height = desc->height};
+    Result result = check(scene, desc);
+    if (result != RESULT_OK)
+        return result;
+    const Camera *camera = &scene->cameras[desc->camera];
+    Matrix view;
+    if (!matrix_invert_affine(&camera->world, &view))
+        return result_fail(RESULT_BAD_INPUT, "camera %d: its matrix has no inverse", desc->camera);
+    Matrix projection = matrix_perspective(camera->yfov, (double)desc->width / desc->height,
+                                           camera->near, camera->far);
+    matrix_round(&projection, out->projection);
+
+    out->draws = memory_array(scene->instance_count, sizeof *out->draws);
+    out->lights = memory_array(scene->light_count, sizeof *out->lights);
+    if (!out->draws || !out->lights) {
+        view_free(out);
+        return RESULT_NO_MEMORY;
+    }
+    add_draws(scene, desc->cull, &view, out);
+    add_lights(scene, desc, &view, out);
+    memcpy(out->ambient, scene->ambient, sizeof out->ambient);
+    memcpy(out->background, scene->background, sizeof out->background);
+    return RESULT_OK;
+}
+
+void view_free(View *view)
+{
+    free(view->draws);
+    free(view->lights);
+    *view = (View){0};
+}

@@ -1,0 +1,75 @@
+#include "image/png.h"
+
+#include "base/file.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <zlib.h>
+
+/* stb frees what this returns with free(). Level 6: stb's own compressor is slower and larger. */
+static unsigned char *png_deflate(unsigned char *data, int size, int *out_size, int quality)
+{
+    (void)quality;
+    uLongf compressed = compressBound((uLong)size);
+    unsigned char *out = compressed <= INT_MAX - 64 ? malloc(compressed) : NULL;
+    if (!out || compress2(out, &compressed, data, (uLong)size, 6) != Z_OK) {
+        free(out);
+        return NULL;
+    }
+    *out_size = (int)compressed;
+    return out;
+}
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wmissing-prototypes"
+#pragma GCC diagnostic ignored "-Wundef"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBIW_ZLIB_COMPRESS png_deflate
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
+static void put(void *context, void *data, int size)
+{
+    file_writer_put(context, data, (size_t)size);
+}
+
+/* Rows of RGB without alpha, so that viewers and other tools cannot misread it. */
+static unsigned char *drop_alpha(const Image *image)
+{
+    size_t count = (size_t)image->width * (size_t)image->height;
+    unsigned char *rgb = malloc(count * 3);
+    const unsigned char *rgba = image->pixels;
+    for (size_t i = 0; rgb && i < count; i++)
+        for (size_t c = 0; c < 3; c++)
+            rgb[3 * i + c] = rgba[4 * i + c];
+    return rgb;
+}
+
+Result png_write(const Image *image, const char *path)
+{
+    if (image->format != FORMAT_RGBA8 || !image->pixels || image->width < 1 || image->height < 1)
+        return result_fail(RESULT_INTERNAL, "%s: expected an rgba8 image with pixels", path);
+    /* stb counts bytes in int. */
+    if ((int64_t)image->width * image->height > (INT_MAX / 2 - image->height) / 3)
+        return result_fail(RESULT_UNSUPPORTED, "%s: %dx%d pixels are too many for a PNG file here",
+                           path, image->width, image->height);
+    unsigned char *rgb = drop_alpha(image);
+    if (!rgb)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
+    FileWriter writer;
+    Result result = file_writer_open(path, &writer);
+    if (result == RESULT_OK) {
+        int made = stbi_write_png_to_func(put, &writer, image->width, image->height, 3, rgb,
+                                          image->width * 3);
+        result = file_writer_close(&writer, made != 0);
+        if (result == RESULT_OK && !made)
+            result = result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
+    }
+    free(rgb);
+    return result;
+}

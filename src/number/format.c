@@ -49,6 +49,50 @@ float format_channel(PixelFormat format, const void *pixel, int channel)
     return (float)bits;
 }
 
+void format_store(PixelFormat format, const float value[4], void *pixel)
+{
+    uint8_t bytes[4];
+    uint16_t words[4];
+    switch (format) {
+    case FORMAT_RGBA8:
+        for (int i = 0; i < 4; i++)
+            bytes[i] = unorm8_from_float(value[i]);
+        memcpy(pixel, bytes, sizeof bytes);
+        return;
+    case FORMAT_RGBA16:
+    case FORMAT_RGBA16F:
+        for (int i = 0; i < 4; i++)
+            words[i] = format == FORMAT_RGBA16 ? unorm16_from_float(value[i])
+                                               : half_from_float(value[i]);
+        memcpy(pixel, words, sizeof words);
+        return;
+    default:
+        memcpy(pixel, value, 4 * sizeof *value);
+    }
+}
+
+void format_fetch(PixelFormat format, const void *pixel, float value[4])
+{
+    uint8_t bytes[4];
+    uint16_t words[4];
+    switch (format) {
+    case FORMAT_RGBA8:
+        memcpy(bytes, pixel, sizeof bytes);
+        for (int i = 0; i < 4; i++)
+            value[i] = unorm8_to_float(bytes[i]);
+        return;
+    case FORMAT_RGBA16:
+    case FORMAT_RGBA16F:
+        memcpy(words, pixel, sizeof words);
+        for (int i = 0; i < 4; i++)
+            value[i] = format == FORMAT_RGBA16 ? unorm16_to_float(words[i])
+                                               : half_to_float(words[i]);
+        return;
+    default:
+        memcpy(value, pixel, 4 * sizeof *value);
+    }
+}
+
 uint8_t unorm8_from_float(float x)
 {
     return (uint8_t)op_round_to_int(op_mul(op_saturate(x), 255.0f));

@@ -36,6 +36,11 @@ size_t format_pixel_bytes(PixelFormat format);
  * unorm as integer / unorm_max in double, rounded to float. */
 float format_channel(PixelFormat format, const void *pixel, int channel);
 
+/* Four channels to and from a stored colour format, as a render target and a texel fetch do.
+ * Flushing mode. */
+void format_store(PixelFormat format, const float value[4], void *pixel);
+void format_fetch(PixelFormat format, const void *pixel, float value[4]);
+
 /* RGBA8: round to nearest even of clamp(x)·255; NaN gives 0. */
 uint8_t unorm8_from_float(float x);
 /* A texel fetch: (float)i · (float)(1/255), not a division. */

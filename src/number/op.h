@@ -183,22 +183,26 @@ static inline float op_abs(float a)
 
 /* ---- GLSL functions, as llvmpipe computes them ------------------------------------------------ */
 
-/* b NaN gives a as it is; equal operands give b. */
+/* b NaN gives a as it is; equal operands give b; a denormal result is flushed. */
 static inline float op_min(float a, float b)
 {
     if (b != b)
         return a;
+#if !OP_HARDWARE_FLUSH
     a = op_flush(a);
     b = op_flush(b);
-    return a < b ? a : b;
+#endif
+    return op_flush(a < b ? a : b);
 }
 static inline float op_max(float a, float b)
 {
     if (b != b)
         return a;
+#if !OP_HARDWARE_FLUSH
     a = op_flush(a);
     b = op_flush(b);
-    return a > b ? a : b;
+#endif
+    return op_flush(a > b ? a : b);
 }
 
 /* clamp(x, 0, 1); NaN gives 0. */

@@ -1,0 +1,255 @@
+#include "report/html.h"
+
+#include "base/file.h"
+#include "report/heatmap.h"
+#include "report/html_tables.h"
+#include "report/pictures.h"
+#include "report/summary.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const char report_style_css[];
+
+/* ---- head and verdict ------------------------------------------------------------------------ */
+
+static void put_head(FileWriter *page, const Threeway *report)
+{
+    file_writer_print(page, "<!doctype html>\n<html lang=\"en\">\n<head>\n"
+                            "<meta charset=\"utf-8\">\n"
+                            "<meta name=\"viewport\" content=\"width=device-width, "
+                            "initial-scale=1\">\n<title>");
+    html_text(page, report->scene_name);
+    file_writer_print(page, " - Peel comparison</title>\n"
+                            "<link rel=\"stylesheet\" href=\"style.css\">\n</head>\n<body>\n"
+                            "<header>\n<p class=\"kicker\">Peel comparison</p>\n<h1>");
+    html_text(page, report->scene_name);
+    file_writer_print(page, "</h1>\n<p class=\"path\">");
+    html_text(page, report->scene_path);
+    file_writer_print(page, "</p>\n</header>\n<main>\n");
+}
+
+static void put_verdict(FileWriter *page, const Threeway *report)
+{
+    char line[SUMMARY_LINE];
+    file_writer_print(page,
+                      "<section class=\"verdict %s\" aria-labelledby=\"verdict\">\n"
+                      "<h2 id=\"verdict\"><span class=\"sign\" aria-hidden=\"true\">%s</span>"
+                      " %s</h2>\n<ul>\n",
+                      report->agree ? "agree" : "differ", report->agree ? "&#10003;" : "&#10007;",
+                      report->agree ? "The three renderers agree" : "The renderers differ");
+    void (*const lines[])(const Threeway *, char *) = {summary_pair_exact, summary_pair_truth,
+                                                       summary_residual, summary_speed};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        lines[i](report, line);
+        if (!line[0])
+            continue;
+        file_writer_print(page, "<li>");
+        html_text(page, line);
+        file_writer_print(page, "</li>\n");
+    }
+    file_writer_print(page, "</ul>\n</section>\n");
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+/* A linked picture; alt and what follows are the caller's, the figure stays open. */
+static void put_picture(FileWriter *page, const char *name, int width, int height, bool lazy)
+{
+    file_writer_print(page,
+                      "<figure>\n<a href=\"%s\"><img src=\"%s\" width=\"%d\" height=\"%d\"%s "
+                      "alt=\"",
+                      name, name, width, height, lazy ? " loading=\"lazy\"" : "");
+}
+
+static void put_finals(FileWriter *page, const Threeway *report)
+{
+    static const char *const roles[RENDERER_COUNT] = {
+        "the pipeline in C, bit for bit",
+        "the same pipeline in OpenGL",
+        "every fragment, exactly sorted, in double precision",
+    };
+    char name[PICTURES_NAME];
+    file_writer_print(page, "<section aria-labelledby=\"images\">\n"
+                            "<h2 id=\"images\">Final images</h2>\n<div class=\"three\">\n");
+    for (int i = 0; i < RENDERER_COUNT; i++) {
+        const Frame *frame = &report->frames[i];
+        put_picture(page, pictures_final(i, name), frame->display.width, frame->display.height,
+                    false);
+        file_writer_print(page, "Final image of %s: ", threeway_renderer_name(i));
+        html_text(page, report->scene_name);
+        file_writer_print(page,
+                          "\"></a>\n<figcaption><strong>%s</strong> %s<br>%.0f ms wall, %.0f ms "
+                          "CPU, %d thread%s</figcaption>\n</figure>\n",
+                          threeway_renderer_name(i), roles[i], frame->time_ms, frame->cpu_ms,
+                          frame->threads, frame->threads == 1 ? "" : "s");
+    }
+    file_writer_print(page, "</div>\n</section>\n");
+}
+
+static void put_scale(FileWriter *page)
+{
+    int low = (int)lround(log10(HEATMAP_LOW)), high = (int)lround(log10(HEATMAP_HIGH));
+    file_writer_print(page,
+                      "<div class=\"scale\">\n<img src=\"" PICTURES_SCALE
+                      "\" width=\"512\" height=\"16\" alt=\"Colour scale from dark blue at "
+                      "1e%d to pale yellow at 1e%d, logarithmic\">\n<ol>\n",
+                      low, high);
+    for (int power = low; power <= high; power++)
+        if (power == 0)
+            file_writer_print(page, "<li>1</li>\n");
+        else
+            file_writer_print(page, "<li>10<sup>%s%d</sup></li>\n", power < 0 ? "&minus;" : "",
+                              abs(power));
+    file_writer_print(page,
+                      "</ol>\n<p>Greatest absolute difference of a pixel's channels, linear "
+                      "values, logarithmic scale. <span class=\"key equal\"></span> black: equal. "
+                      "<span class=\"key nonfinite\"></span> magenta: not a finite number.</p>\n"
+                      "</div>\n");
+}
+
+static void put_differences(FileWriter *page, const Threeway *report)
+{
+    char name[PICTURES_NAME], differing[SUMMARY_NUMBER], greatest[SUMMARY_NUMBER];
+    char rmse[SUMMARY_NUMBER];
+    file_writer_print(page, "<section aria-labelledby=\"differences\">\n"
+                            "<h2 id=\"differences\">Where they differ</h2>\n");
+    put_scale(page);
+    file_writer_print(page, "<div class=\"three\">\n");
+    for (int i = 0; i < 3; i++) {
+        const PairReport *pair = &report->pairs[i];
+        const char *a = threeway_renderer_name(pair->a), *b = threeway_renderer_name(pair->b);
+        const FinalMetrics *final = &pair->final;
+        summary_count(final->differing, differing);
+        summary_real(final->max_abs, greatest);
+        put_picture(page, pictures_difference(pair, name), report->frames[pair->a].final.width,
+                    report->frames[pair->a].final.height, false);
+        file_writer_print(page, "Difference of %s and %s: %s pixels differ, at most by %s", a, b,
+                          differing, greatest);
+        file_writer_print(page, "\"></a>\n<figcaption><strong>%s &minus; %s</strong> ", a, b);
+        if (final->differing)
+            file_writer_print(page, "%s pixels differ (%.2f&nbsp;%%), at most by %s; RMSE %s",
+                              differing, 100.0 * (double) final->differing / (double) final->pixels,
+                              greatest, summary_real(final->rmse, rmse));
+        else
+            file_writer_print(page, "equal, bit for bit");
+        file_writer_print(page, "</figcaption>\n</figure>\n");
+    }
+    file_writer_print(page, "</div>\n</section>\n");
+}
+
+static void put_peel(FileWriter *page, const PeelPicture *peel)
+{
+    char name[PICTURES_NAME], pixels[SUMMARY_NUMBER];
+    file_writer_print(page,
+                      "<li class=\"peel\">\n<h3>Peel %d <span>peel.%d, %s pixels</span></h3>\n",
+                      peel->peel + 1, peel->peel, summary_count(peel->pixels, pixels));
+    put_picture(page, pictures_added(peel, name), peel->added.width, peel->added.height, true);
+    file_writer_print(page,
+                      "Light that peel %d adds\"></a>\n<figcaption>adds</figcaption>\n</figure>\n",
+                      peel->peel + 1);
+    put_picture(page, pictures_accum(peel, name), peel->accum.width, peel->accum.height, true);
+    file_writer_print(page,
+                      "Image accumulated after peel %d\"></a>\n<figcaption>so far</figcaption>\n"
+                      "</figure>\n</li>\n",
+                      peel->peel + 1);
+}
+
+static void put_peels(FileWriter *page, const Threeway *report)
+{
+    int peels = report->frames[RENDERER_REF].peels;
+    file_writer_print(page, "<section aria-labelledby=\"peels\">\n<h2 id=\"peels\">Peel by "
+                            "peel</h2>\n");
+    if (!report->peel_count)
+        file_writer_print(page, "<p>Nothing transparent is in view: no peel has a fragment.</p>\n");
+    else
+        file_writer_print(page,
+                          "<p>Front to back, as ref draws them: what each layer adds (a "
+                          "checkerboard where it has no fragment), and the image so far, before "
+                          "the opaque surfaces behind.%s</p>\n",
+                          (int)report->peel_count < peels ? " The front layers are shown." : "");
+    if ((int)report->peel_count < peels)
+        file_writer_print(page, "<p>Shown: %zu of %d peels.</p>\n", report->peel_count, peels);
+    if (report->peel_count) {
+        file_writer_print(page, "<ol class=\"peels\">\n");
+        for (size_t i = 0; i < report->peel_count; i++)
+            put_peel(page, &report->peels[i]);
+        file_writer_print(page, "</ol>\n");
+    }
+    file_writer_print(page, "</section>\n");
+}
+
+/* ---- the rest -------------------------------------------------------------------------------- */
+
+static void put_command(FileWriter *page, const char *command)
+{
+    file_writer_print(page, "<section aria-labelledby=\"again\">\n<h2 id=\"again\">Make this "
+                            "report again</h2>\n<pre><code>");
+    html_text(page, command);
+    file_writer_print(page, "</code></pre>\n</section>\n");
+}
+
+static void put_guide(FileWriter *page)
+{
+    file_writer_print(
+        page,
+        "<section aria-labelledby=\"guide\">\n<h2 id=\"guide\">How to read this</h2>\n<dl>\n"
+        "<dt>ref</dt><dd>Deferred depth peeling computed in plain C, meant to store exactly the "
+        "bits that the OpenGL pipeline stores.</dd>\n"
+        "<dt>gl</dt><dd>The same pipeline in OpenGL. Any differing bit between ref and gl is a "
+        "fault of one of the two.</dd>\n"
+        "<dt>truth</dt><dd>Every fragment, sorted by exact depth, shaded and composited in double "
+        "precision, with code of its own. Small differences from it are the price of single "
+        "precision; large ones point to fragments in another order.</dd>\n"
+        "<dt>Same structure</dt><dd>Pixels in which ref and truth have the same fragments in the "
+        "same order. Only these are judged against the tolerance; the difference is relative to "
+        "max(1, value).</dd>\n"
+        "<dt>ULP</dt><dd>Steps between neighbouring values of the stored format.</dd>\n"
+        "<dt>Verdict</dt><dd>Agree: ref and gl have no differing bit in any buffer, and ref and "
+        "truth agree at the 99th percentile within the tolerance.</dd>\n</dl>\n</section>\n");
+}
+
+static Result put_page(const Threeway *report, const char *command, FileWriter *page)
+{
+    put_head(page, report);
+    put_verdict(page, report);
+    put_finals(page, report);
+    put_differences(page, report);
+    put_peels(page, report);
+    html_tables(page, report);
+    put_command(page, command);
+    put_guide(page);
+    return file_writer_print(page, "</main>\n</body>\n</html>\n");
+}
+
+static Result write_page(const Threeway *report, const char *command, const char *path)
+{
+    FileWriter page;
+    Result result = file_writer_open(path, &page);
+    if (result != RESULT_OK)
+        return result;
+    result = put_page(report, command, &page);
+    Result closed = file_writer_close(&page, result == RESULT_OK);
+    return result == RESULT_OK ? closed : result;
+}
+
+/* The page comes last, so that it never shows pictures that are not there. */
+Result report_html_write(const Threeway *report, const char *command, const char *dir)
+{
+    Result result = file_make_directories(dir);
+    if (result == RESULT_OK)
+        result = pictures_write(report, dir);
+    if (result != RESULT_OK)
+        return result;
+    char *style = pictures_path(dir, "style.css"), *page = pictures_path(dir, "index.html");
+    result = style && page ? file_write(style, report_style_css, strlen(report_style_css))
+                           : RESULT_NO_MEMORY;
+    if (result == RESULT_OK)
+        result = write_page(report, command, page);
+    free(style);
+    free(page);
+    return result;
+}

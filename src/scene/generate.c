@@ -1,0 +1,360 @@
+#include "scene/generate.h"
+
+#include "base/random.h"
+#include "scene/builder.h"
+#include "scene/shapes.h"
+#include "scene/teapot.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define PI 3.141592653589793
+
+/* ---- pieces ---------------------------------------------------------------------------------- */
+
+/* Placements are rounded to float, so that a file keeps them exactly whoever reads it. */
+static Matrix rounded(const Matrix *a)
+{
+    float rounded[16];
+    Matrix out;
+    matrix_round(a, rounded);
+    for (int i = 0; i < 16; i++)
+        out.m[i] = (double)rounded[i];
+    return out;
+}
+
+static void place(Builder *builder, const char *name, uint32_t mesh, uint32_t material,
+                  const Matrix *world)
+{
+    Instance instance = {.mesh = mesh, .material = material, .world = rounded(world)};
+    builder_instance(builder, &instance, name);
+}
+
+static void place_at(Builder *builder, const char *name, uint32_t mesh, uint32_t material, double x,
+                     double y, double z)
+{
+    Matrix world = matrix_translate(x, y, z);
+    place(builder, name, mesh, material, &world);
+}
+
+/* A dielectric or metal; alpha below 1 makes it transparent and visible from both sides. */
+static uint32_t surface(Builder *builder, const char *name, const float color[4], float roughness,
+                        float metallic)
+{
+    bool transparent = color[3] < 1.0f;
+    Material material = {.roughness = roughness,
+                         .metallic = metallic,
+                         .occlusion = 1.0f,
+                         .alpha_mode = transparent ? ALPHA_BLEND : ALPHA_OPAQUE,
+                         .alpha_cutoff = 0.5f,
+                         .double_sided = transparent};
+    memcpy(material.base_color, color, sizeof material.base_color);
+    return builder_material(builder, &material, name);
+}
+
+typedef struct Gaze {
+    const char *name;
+    double eye[3], target[3];
+    double yfov, near, far;
+} Gaze;
+
+static void look(Builder *builder, const Gaze *gaze)
+{
+    Matrix world, view = matrix_look_at(gaze->eye, gaze->target, (const double[3]){0.0, 1.0, 0.0});
+    Camera camera = {.yfov = gaze->yfov, .near = gaze->near, .far = gaze->far};
+    matrix_invert_affine(&view, &world);
+    camera.world = rounded(&world);
+    builder_camera(builder, &camera, gaze->name);
+}
+
+/* A light whose brightness does not fall with distance: only its direction matters. */
+static void lamp(Builder *builder, double x, double y, double z, float r, float g, float b)
+{
+    Light light = {.position = {x, y, z}, .color = {r, g, b}, .attenuation = {1.0f, 0.0f, 0.0f}};
+    builder_light(builder, &light);
+}
+
+/* A quarter turn that lays a plane facing +z down, facing +y; then moved. */
+static Matrix lying(double x, double y, double z)
+{
+    return (Matrix){{[0] = 1.0, [6] = -1.0, [9] = 1.0, [12] = x, [13] = y, [14] = z, [15] = 1.0}};
+}
+
+/* ---- teapot_hall and teapot_hall_stress -------------------------------------------------------
+ */
+
+/* Source: L. Rapetta's program (sources.md, 000): planes of 5 × 5 teapots in a bevelled room. */
+typedef struct HallPlane {
+    const char *name;
+    double z;
+    float color[4];
+    float metallic;
+} HallPlane;
+
+enum {
+    HALL_LIGHTS = 128
+};
+enum {
+    HALL_SEED = 2021
+};
+/* The source's colours are uniform in [0, 1]³; times this the first 16 lights expose the picture
+ * well under c/(c + 1), and all 128 do not yet wash it out. */
+#define HALL_BRIGHTNESS 8.0
+
+static void hall_lights(Builder *builder)
+{
+    Random random = random_seed(HALL_SEED);
+    for (int i = 0; i < HALL_LIGHTS; i++) {
+        Light light = {.attenuation = {1.0f, 0.14f, 0.07f}};
+        for (int k = 0; k < 3; k++)
+            light.position[k] = (double)(float)random_range(&random, -10.0, 10.0);
+        for (int k = 0; k < 3; k++)
+            light.color[k] = (float)(HALL_BRIGHTNESS * random_unit(&random));
+        builder_light(builder, &light);
+    }
+    builder->scene.light_degrees_per_second = 15.0;
+}
+
+static void hall_plane(Builder *builder, const HallPlane *plane, uint32_t teapot)
+{
+    uint32_t material = surface(builder, plane->name, plane->color, 0.25f, plane->metallic);
+    for (int row = 0; row < 5; row++)
+        for (int column = 0; column < 5; column++) {
+            char name[64];
+            snprintf(name, sizeof name, "teapot %s %d %d", plane->name, row, column);
+            place_at(builder, name, teapot, material, 2.5 * column - 5.0, 2.5 * row - 5.0,
+                     plane->z);
+        }
+}
+
+static Result hall(const char *name, const HallPlane planes[4], const Gaze *gazes, int gaze_count,
+                   Scene *out)
+{
+    Builder builder = builder_begin(name);
+    Mesh mesh;
+    Result made = shapes_room(10.0, 1.0, &mesh);
+    uint32_t room = builder_mesh(&builder, made, &mesh);
+    made = teapot_mesh(&mesh);
+    uint32_t teapot = builder_mesh(&builder, made, &mesh);
+    uint32_t wall =
+        surface(&builder, "room", (const float[4]){0.75f, 0.75f, 0.75f, 1.0f}, 0.45f, 1.0f);
+    place_at(&builder, "room", room, wall, 0.0, 0.0, 0.0);
+    for (int i = 0; i < 4; i++)
+        hall_plane(&builder, &planes[i], teapot);
+    for (int i = 0; i < gaze_count; i++)
+        look(&builder, &gazes[i]);
+    hall_lights(&builder);
+    return builder_finish(&builder, out);
+}
+
+static Result generate_teapot_hall(Scene *out)
+{
+    static const HallPlane planes[4] = {{"red", -8.0, {1.0f, 0.0f, 0.0f, 1.0f}, 0.0f},
+                                        {"green", -4.0, {0.0f, 1.0f, 0.0f, 0.5f}, 0.0f},
+                                        {"violet", 4.0, {0.75f, 0.35f, 1.0f, 0.5f}, 1.0f},
+                                        {"amber", 8.0, {0.75f, 0.35f, 0.0f, 1.0f}, 1.0f}};
+    static const Gaze gazes[] = {
+        {"default", {1.0, 2.0, 6.75}, {0.0, 0.5, -4.0}, 80.0 * PI / 180.0, 0.125, 1000.0},
+        {"side", {7.5, 1.25, 5.25}, {0.0, 0.5, 3.75}, 80.0 * PI / 180.0, 0.125, 1000.0}};
+    return hall("teapot_hall", planes, gazes, 2, out);
+}
+
+static Result generate_teapot_hall_stress(Scene *out)
+{
+    static const HallPlane planes[4] = {{"red", -8.0, {1.0f, 0.0f, 0.0f, 0.5f}, 0.0f},
+                                        {"green", -4.0, {0.0f, 1.0f, 0.0f, 0.5f}, 0.0f},
+                                        {"violet", 4.0, {0.75f, 0.35f, 1.0f, 0.5f}, 1.0f},
+                                        {"amber", 8.0, {0.75f, 0.35f, 0.0f, 0.5f}, 1.0f}};
+    static const Gaze gazes[] = {
+        {"default", {0.125, 0.625, 9.0}, {0.0, 0.5, 0.0}, 80.0 * PI / 180.0, 0.125, 1000.0}};
+    return hall("teapot_hall_stress", planes, gazes, 1, out);
+}
+
+/* ---- the tutorial's scenes --------------------------------------------------------------------
+ */
+
+/* Teapot, plane and sphere, all transparent, the sphere reaching into the teapot and both through
+ * the plane. The background is not black, so that a wrong weight of it shows. */
+static Result generate_tutorial(Scene *out)
+{
+    Builder builder = builder_begin("tutorial");
+    Mesh mesh;
+    Result made = shapes_plane(5.0, 4.0, 1, 1, &mesh);
+    uint32_t plane = builder_mesh(&builder, made, &mesh);
+    made = teapot_mesh(&mesh);
+    uint32_t teapot = builder_mesh(&builder, made, &mesh);
+    made = shapes_sphere(0.75, 48, 24, &mesh);
+    uint32_t sphere = builder_mesh(&builder, made, &mesh);
+    uint32_t red =
+        surface(&builder, "teapot", (const float[4]){0.9f, 0.25f, 0.2f, 0.5f}, 0.3f, 0.0f);
+    uint32_t blue =
+        surface(&builder, "plane", (const float[4]){0.25f, 0.45f, 0.9f, 0.5f}, 0.5f, 0.0f);
+    uint32_t green =
+        surface(&builder, "sphere", (const float[4]){0.3f, 0.85f, 0.35f, 0.5f}, 0.3f, 0.0f);
+    Matrix floor = lying(0.0, 0.1875, 0.0);
+    place_at(&builder, "teapot", teapot, red, -0.5, 0.0, 0.0);
+    place(&builder, "plane", plane, blue, &floor);
+    place_at(&builder, "sphere", sphere, green, 0.75, 0.5, 0.625);
+    look(&builder, &(Gaze){"default", {1.5, 2.0, 4.0}, {0.0, 0.375, 0.0}, PI / 4.0, 0.125, 100.0});
+    lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.5f, 2.5f);
+    lamp(&builder, -4.0, 3.0, -2.0, 0.8f, 0.9f, 1.2f);
+    const float background[3] = {0.04f, 0.06f, 0.1f};
+    memcpy(builder.scene.background, background, sizeof background);
+    return builder_finish(&builder, out);
+}
+
+static uint32_t ground(Builder *builder, double y)
+{
+    Mesh mesh;
+    Result made = shapes_plane(12.0, 12.0, 1, 1, &mesh);
+    uint32_t plane = builder_mesh(builder, made, &mesh);
+    uint32_t gray =
+        surface(builder, "ground", (const float[4]){0.6f, 0.58f, 0.55f, 1.0f}, 0.8f, 0.0f);
+    Matrix floor = lying(0.0, y, 0.0);
+    place(builder, "ground", plane, gray, &floor);
+    return plane;
+}
+
+/* Rings that hold each other: no order of whole objects draws them right. */
+static Result generate_chain(Scene *out)
+{
+    static const float colors[][4] = {{0.9f, 0.2f, 0.15f, 0.5f},  {0.95f, 0.6f, 0.1f, 0.5f},
+                                      {0.85f, 0.85f, 0.2f, 0.5f}, {0.2f, 0.75f, 0.3f, 0.5f},
+                                      {0.15f, 0.7f, 0.8f, 0.5f},  {0.2f, 0.35f, 0.9f, 0.5f},
+                                      {0.65f, 0.3f, 0.85f, 0.5f}};
+    enum {
+        LINKS = sizeof colors / sizeof colors[0]
+    };
+    Builder builder = builder_begin("chain");
+    ground(&builder, -1.0);
+    Mesh mesh;
+    Result made = shapes_torus(0.5, 0.125, 64, 24, &mesh);
+    uint32_t ring = builder_mesh(&builder, made, &mesh);
+    for (int i = 0; i < LINKS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "link %d", i);
+        uint32_t material = surface(&builder, name, colors[i], 0.25f, 0.0f);
+        double x = 0.71875 * (i - LINKS / 2);
+        Matrix world = i % 2 ? lying(x, 0.0, 0.0) : matrix_translate(x, 0.0, 0.0);
+        place(&builder, name, ring, material, &world);
+    }
+    look(&builder,
+         &(Gaze){"default", {1.5, 1.75, 4.25}, {0.0, -0.125, 0.0}, PI / 4.0, 0.125, 100.0});
+    lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.4f, 2.3f);
+    lamp(&builder, -4.0, 3.0, 1.0, 0.8f, 0.9f, 1.1f);
+    return builder_finish(&builder, out);
+}
+
+/* Four planes through each other: only cut along their lines of intersection could they be sorted.
+ */
+static Result generate_crossing_planes(Scene *out)
+{
+    static const float colors[4][4] = {{0.9f, 0.2f, 0.2f, 0.5f},
+                                       {0.2f, 0.8f, 0.3f, 0.5f},
+                                       {0.25f, 0.4f, 0.95f, 0.5f},
+                                       {0.95f, 0.8f, 0.2f, 0.5f}};
+    static const char *const names[4] = {"red", "green", "blue", "yellow"};
+    Builder builder = builder_begin("crossing_planes");
+    ground(&builder, -1.25);
+    Mesh mesh;
+    Result made = shapes_plane(2.0, 2.0, 1, 1, &mesh);
+    uint32_t plane = builder_mesh(&builder, made, &mesh);
+    for (int i = 0; i < 4; i++) {
+        uint32_t material = surface(&builder, names[i], colors[i], 0.4f, 0.0f);
+        Matrix world = i < 3 ? matrix_rotate_y((0.1 + i / 3.0) * PI) : lying(0.0, 0.0, 0.0);
+        place(&builder, names[i], plane, material, &world);
+    }
+    look(&builder,
+         &(Gaze){"default", {1.25, 1.5, 3.5}, {0.0, -0.125, 0.0}, PI / 4.0, 0.125, 100.0});
+    lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.4f, 2.3f);
+    lamp(&builder, -4.0, 3.0, 1.0, 0.8f, 0.9f, 1.1f);
+    return builder_finish(&builder, out);
+}
+
+/* ---- alpha_ladder -----------------------------------------------------------------------------
+ */
+
+enum {
+    LADDER_ROWS = 8,
+    LADDER_COLUMNS = 16
+};
+
+/* Light and dark stripes, so that every cell stands before both. */
+static void ladder_backdrop(Builder *builder, double z)
+{
+    Mesh mesh;
+    Result made = shapes_plane(18.0, 10.0, 1, 1, &mesh);
+    uint32_t wall = builder_mesh(builder, made, &mesh);
+    made = shapes_plane(0.5, 10.0, 1, 1, &mesh);
+    uint32_t stripe = builder_mesh(builder, made, &mesh);
+    uint32_t light =
+        surface(builder, "light", (const float[4]){0.9f, 0.9f, 0.9f, 1.0f}, 0.9f, 0.0f);
+    uint32_t dark =
+        surface(builder, "dark", (const float[4]){0.08f, 0.08f, 0.08f, 1.0f}, 0.9f, 0.0f);
+    place_at(builder, "wall", wall, light, 0.0, 0.0, z);
+    for (int column = 0; column < LADDER_COLUMNS; column++) {
+        char name[32];
+        snprintf(name, sizeof name, "stripe %d", column + 1);
+        place_at(builder, name, stripe, dark, column - 7.25, 0.0, z + 0.0625);
+    }
+}
+
+/* Column c (from 1) has c equal layers, row r one alpha; the nearest layer is drawn first. */
+static Result generate_alpha_ladder(Scene *out)
+{
+    static const double alphas[LADDER_ROWS] = {1.0 / 255.0, 0.01, 0.25,          0.5,
+                                               0.75,        0.99, 254.0 / 255.0, 1.0};
+    Builder builder = builder_begin("alpha_ladder");
+    ladder_backdrop(&builder, -1.0);
+    Mesh mesh;
+    Result made = shapes_plane(0.75, 0.75, 1, 1, &mesh);
+    uint32_t quad = builder_mesh(&builder, made, &mesh);
+    for (int row = 0; row < LADDER_ROWS; row++) {
+        char name[64];
+        snprintf(name, sizeof name, "alpha %.4g", alphas[row]);
+        Material material = {.base_color = {0.95f, 0.45f, 0.1f, (float)alphas[row]},
+                             .roughness = 0.9f,
+                             .occlusion = 1.0f,
+                             .alpha_mode = ALPHA_BLEND,
+                             .alpha_cutoff = 0.5f};
+        uint32_t tint = builder_material(&builder, &material, name);
+        for (int column = 0; column < LADDER_COLUMNS; column++)
+            for (int layer = 0; layer <= column; layer++) {
+                snprintf(name, sizeof name, "row %d column %d layer %d", row + 1, column + 1,
+                         layer + 1);
+                place_at(&builder, name, quad, tint, column - 7.5, 3.5 - row, -layer / 64.0);
+            }
+    }
+    look(&builder, &(Gaze){"default", {0.0, 0.0, 40.0}, {0.0, 0.0, 0.0}, 0.2375, 10.0, 100.0});
+    lamp(&builder, 10.0, 20.0, 40.0, 2.5f, 2.5f, 2.5f);
+    return builder_finish(&builder, out);
+}
+
+/* ---- table ------------------------------------------------------------------------------------
+ */
+
+static const BuiltinScene scenes[] = {
+    {"teapot_hall", "four planes of 5 x 5 teapots in a room, two of them transparent, 128 lights",
+     generate_teapot_hall},
+    {"teapot_hall_stress", "the same, all transparent, the camera close to one teapot",
+     generate_teapot_hall_stress},
+    {"tutorial", "teapot, plane and sphere through each other, all transparent", generate_tutorial},
+    {"chain", "inter-linked rings: no order of objects is right", generate_chain},
+    {"crossing_planes", "four planes through each other: no order of objects is right",
+     generate_crossing_planes},
+    {"alpha_ladder", "1 to 16 equal layers by eight alphas from 1/255 to 1", generate_alpha_ladder},
+};
+
+const BuiltinScene *generate_table(size_t *count)
+{
+    *count = sizeof scenes / sizeof scenes[0];
+    return scenes;
+}
+
+const BuiltinScene *generate_find(const char *name)
+{
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++)
+        if (strcmp(scenes[i].name, name) == 0)
+            return &scenes[i];
+    return NULL;
+}

@@ -73,7 +73,11 @@ void scene_free(Scene *scene); /* frees what the scene owns and zeroes it */
 uint64_t scene_triangle_count(const Scene *scene); /* over all instances */
 
 /* Every rule stated above; BAD_INPUT names the first breach as "mesh 3: ...". Loaders and
- * generators end with it, so renderers need not check again. */
+ * generators end with it, so renderers need not check again. Also: names and arrays are present,
+ * a mesh has a vertex and a triangle, nothing in world space lies beyond 1e15 from the origin,
+ * light is at most 1e12 and c + 0.01·l + 1e-4·q of its attenuation at least 1e-8 (so that single
+ * precision cannot overflow), and there are fewer than 2^32 − 1 triangles over all instances.
+ * Zero-area triangles and singular instance matrices are legal. NO_MEMORY is possible. */
 Result scene_validate(const Scene *scene);
 
 /* World-space bounding box of all instances. False when there is no vertex. */
@@ -83,9 +87,11 @@ bool scene_bounds(const Scene *scene, double low[3], double high[3]);
  * mode at 1 only). */
 void scene_override_opacity(Scene *scene, float opacity);
 
-/* A camera that sees the whole scene, from a little above and the side. Appends it. */
+/* A camera that sees the whole scene, from a little above and the side; vertical field of view
+ * 45°, for images at least as wide as high. Appends it. */
 Result scene_add_framing_camera(Scene *scene);
-/* Three point lights sized to the scene: key, fill, rim. Appends them. */
+/* Three point lights around the scene: key, fill, rim, two to three of its radii away, without
+ * falloff (attenuation 1, 0, 0). Appends them. */
 Result scene_add_default_lights(Scene *scene);
 
 #endif

@@ -1,0 +1,33 @@
+/* An OpenGL 4.6 core context on OSMesa, current on the thread that opened it. */
+#ifndef PEEL_GL_CONTEXT_H
+#define PEEL_GL_CONTEXT_H
+
+#include "api.h"
+
+typedef struct Context Context;
+
+/* Limits the renderer depends on. */
+typedef struct ContextLimits {
+    int texture_size;   /* pixels a side */
+    int viewport[2];    /* pixels */
+    int draw_buffers;
+    int uniform_block;  /* bytes */
+    int storage_block;  /* bytes */
+} ContextLimits;
+
+/* Opens a context, loads gl and reports driver errors to it. threads > 0 asks llvmpipe for that
+ * many rasterizer threads; only the first context of a process can, and only where LP_NUM_THREADS
+ * is not set. NO_GL when there is no such context. The caller closes it on the same thread. */
+Result context_open(int threads, Context **out);
+void context_close(Context *context); /* NULL is fine */
+
+const ContextLimits *context_limits(const Context *context);
+
+/* Rasterizer threads in effect, at least 1. */
+int context_threads(void);
+
+/* Finishes pending work and fails with NO_GL (NO_MEMORY where the driver had none) and the
+ * driver's text if it has reported an error since the last check. where: a few words. */
+Result context_check(Context *context, const char *where);
+
+#endif

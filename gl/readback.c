@@ -1,0 +1,93 @@
+#include "readback.h"
+
+#include <string.h>
+
+typedef struct Transfer {
+    GLenum format, type;
+} Transfer;
+
+static const Transfer transfers[FORMAT_COUNT] = {
+    [FORMAT_RGBA32F] = {GL_RGBA, GL_FLOAT},
+    [FORMAT_RGBA16F] = {GL_RGBA, GL_HALF_FLOAT},
+    [FORMAT_RGBA16] = {GL_RGBA, GL_UNSIGNED_SHORT},
+    [FORMAT_RGBA8] = {GL_RGBA, GL_UNSIGNED_BYTE},
+    [FORMAT_D32F] = {GL_DEPTH_COMPONENT, GL_FLOAT},
+    [FORMAT_D24] = {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
+    [FORMAT_R32UI] = {GL_RED_INTEGER, GL_UNSIGNED_INT},
+};
+
+static void swap_rows(unsigned char *a, unsigned char *b, size_t bytes)
+{
+    unsigned char block[4096];
+    for (size_t at = 0; at < bytes; at += sizeof block) {
+        size_t part = bytes - at < sizeof block ? bytes - at : sizeof block;
+        memcpy(block, a + at, part);
+        memcpy(a + at, b + at, part);
+        memcpy(b + at, block, part);
+    }
+}
+
+static void flip(const Targets *targets, PixelFormat format, void *pixels)
+{
+    unsigned char *rows = pixels;
+    size_t row_bytes = (size_t)targets->width * format_pixel_bytes(format);
+    for (int top = 0, bottom = targets->height - 1; top < bottom; top++, bottom--)
+        swap_rows(rows + (size_t)top * row_bytes, rows + (size_t)bottom * row_bytes, row_bytes);
+}
+
+static void read_pixels(const Targets *targets, PixelFormat format, ReadbackRows rows, void *pixels)
+{
+    const Transfer *transfer = &transfers[format];
+    gl.ReadPixels(0, 0, targets->width, targets->height, transfer->format, transfer->type, pixels);
+    if (rows == READBACK_TOP_DOWN)
+        flip(targets, format, pixels);
+}
+
+void readback_color(const Targets *targets, GLuint framebuffer, int attachment, PixelFormat format,
+                    ReadbackRows rows, void *pixels)
+{
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    gl.NamedFramebufferReadBuffer(framebuffer, GL_COLOR_ATTACHMENT0 + (GLenum)attachment);
+    read_pixels(targets, format, rows, pixels);
+}
+
+void readback_depth(const Targets *targets, GLuint framebuffer, ReadbackRows rows, void *pixels)
+{
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    read_pixels(targets, targets->depth_format, rows, pixels);
+    if (targets->depth_format != FORMAT_D24)
+        return;
+    /* The driver widens 24 bits to 32 by repeating the leading ones. */
+    uint32_t *codes = pixels;
+    size_t count = (size_t)targets->width * (size_t)targets->height;
+    for (size_t i = 0; i < count; i++)
+        codes[i] >>= 8;
+}
+
+static Result put(const Targets *targets, int peel, const char *what, PixelFormat format,
+                  TraceSink *trace, const void *pixels)
+{
+    static const char *const opaque_names[] = {"opaque.depth", "opaque.normal", "opaque.position",
+                                               "opaque.diffuse", "opaque.material"};
+    if (peel >= 0)
+        return trace_put_peel(trace, peel, what, format, targets->width, targets->height, pixels);
+    for (size_t i = 0; i < sizeof opaque_names / sizeof *opaque_names; i++)
+        if (!strcmp(opaque_names[i] + strlen("opaque."), what))
+            return trace_put(trace, opaque_names[i], 0, format, targets->width, targets->height,
+                             pixels);
+    return result_fail(RESULT_INTERNAL, "trace: no opaque buffer is called %s", what);
+}
+
+Result readback_trace_gbuffer(const Targets *targets, GLuint framebuffer, int peel,
+                              TraceSink *trace, void *scratch)
+{
+    static const char *const names[GBUFFER_TARGETS] = {"normal", "position", "diffuse", "material"};
+    readback_depth(targets, framebuffer, READBACK_TOP_DOWN, scratch);
+    Result result = put(targets, peel, "depth", targets->depth_format, trace, scratch);
+    for (int i = 0; i < GBUFFER_TARGETS && result == RESULT_OK; i++) {
+        PixelFormat format = targets->color_format[i];
+        readback_color(targets, framebuffer, i, format, READBACK_TOP_DOWN, scratch);
+        result = put(targets, peel, names[i], format, trace, scratch);
+    }
+    return result;
+}

@@ -1,0 +1,6 @@
+layout(location = 0) out float depth;
+
+void main()
+{
+    depth = gl_FragCoord.z;
+}

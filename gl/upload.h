@@ -1,0 +1,37 @@
+/* The scene's meshes and lights in the driver's memory. */
+#ifndef PEEL_GL_UPLOAD_H
+#define PEEL_GL_UPLOAD_H
+
+#include "context.h"
+#include "frame/view.h"
+
+/* Where a mesh lies in the shared buffers. */
+typedef struct MeshRange {
+    uint32_t first_index;
+    uint32_t index_count;
+    int32_t base_vertex;
+} MeshRange;
+
+/* All meshes in one vertex array: attribute 0 position, attribute 1 normal, 32-bit indices. */
+typedef struct Meshes {
+    GLuint vertex_array, vertices, indices;
+    MeshRange *ranges; /* one per mesh of the scene */
+    size_t bytes;      /* of the buffers */
+} Meshes;
+
+/* UNSUPPORTED when the scene has more than 2^31 − 1 vertices or indices. */
+Result upload_meshes(Context *context, const Scene *scene, Meshes *out);
+void upload_free_meshes(Meshes *meshes); /* leaves an empty one */
+
+/* The lights as three vec4 each, in a uniform block, or where they do not fit, a storage block. */
+typedef struct LightBuffer {
+    GLuint buffer; /* 0 without lights */
+    bool storage;
+    size_t bytes;
+} LightBuffer;
+
+/* UNSUPPORTED when there are more lights than a storage block of the driver's holds. */
+Result upload_lights(Context *context, const View *view, LightBuffer *out);
+void upload_free_lights(LightBuffer *lights);
+
+#endif

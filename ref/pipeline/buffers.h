@@ -1,0 +1,67 @@
+/* The G-buffer: what the geometry pass stores and the lighting pass reads, in stored formats. */
+#ifndef PEEL_REF_BUFFERS_H
+#define PEEL_REF_BUFFERS_H
+
+#include "frame/render_desc.h"
+#include "image/image.h"
+#include "number/format.h"
+
+#include <string.h>
+
+/* Values as a shader writes or fetches them. */
+typedef struct Texel {
+    float normal[4], position[4], diffuse[4], material[4];
+} Texel;
+
+typedef struct GBufferLayout {
+    PixelFormat normal, position, diffuse, material;
+} GBufferLayout;
+
+GBufferLayout gbuffer_layout(GBufferFormat format);
+
+/* A full-size G-buffer with its depth; primitive ids beside it are for statistics only. */
+typedef struct GBuffer {
+    Image depth, normal, position, diffuse, material, primitive;
+} GBuffer;
+
+/* Cleared. The caller frees with gbuffer_free. */
+Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth, GBuffer *out);
+void gbuffer_free(GBuffer *buffers);
+/* Colours to 0, depth to 1, primitive to UINT32_MAX. */
+void gbuffer_clear(GBuffer *buffers);
+
+/* Pixel (x, y) from the top left. Flushing mode. */
+void gbuffer_store(GBuffer *buffers, int x, int y, const Texel *texel);
+void gbuffer_load(const GBuffer *buffers, int x, int y, Texel *out);
+
+/* What load gives after store, without the memory. Flushing mode. */
+void texel_quantise(const GBufferLayout *layout, Texel *texel);
+
+/* A stored depth as an integer whose order is the depth's: the bits of a D32F (never negative,
+ * so they sort as integers), the D24 itself. */
+static inline uint32_t depth_key(PixelFormat format, float z)
+{
+    if (format == FORMAT_D24)
+        return depth24_from_float(z);
+    float stored = depth32f_from_float(z);
+    uint32_t key;
+    memcpy(&key, &stored, sizeof key);
+    return key;
+}
+
+static inline uint32_t depth_key_far(PixelFormat format)
+{
+    return format == FORMAT_D24 ? 0xffffffu : 0x3f800000u;
+}
+
+/* What a texel fetch makes of it. */
+static inline float depth_fetch(PixelFormat format, uint32_t key)
+{
+    if (format == FORMAT_D24)
+        return depth24_to_float(key);
+    float stored;
+    memcpy(&stored, &key, sizeof stored);
+    return stored;
+}
+
+#endif

@@ -1,0 +1,190 @@
+#include "ref/pipeline/pass.h"
+
+#include "base/memory.h"
+#include "frame/shading.h"
+#include "number/op.h"
+
+#include <stdlib.h>
+
+typedef struct TileRange {
+    uint32_t x0, y0, x1, y1; /* tiles, both ends included */
+} TileRange;
+
+static TileRange tiles_of(const Pass *pass, const Primitive *primitive)
+{
+    const Vertex *vertices = pass->geometry.vertices;
+    const Vertex *const corners[3] = {&vertices[primitive->vertex[0]],
+                                      &vertices[primitive->vertex[1]],
+                                      &vertices[primitive->vertex[2]]};
+    PixelRect box = setup_bounds(corners, pass->view.width, pass->view.height);
+    return (TileRange){(uint32_t)box.x0 / TILE, (uint32_t)box.y0 / TILE, (uint32_t)box.x1 / TILE,
+                       (uint32_t)box.y1 / TILE};
+}
+
+/* Counting sort by tile: counts, prefix sums, then the indices in draw order. */
+static Result bin(const Pass *pass, const PrimitiveList *list, Bins *out)
+{
+    out->first = memory_array(pass->tile_count + (size_t)2, sizeof *out->first);
+    if (!out->first)
+        return RESULT_NO_MEMORY;
+    size_t *next = out->first + 1; /* next[t] ends up as first[t + 1] */
+    for (size_t i = 0; i < list->count; i++) {
+        TileRange r = tiles_of(pass, &list->items[i]);
+        for (uint32_t y = r.y0; y <= r.y1; y++)
+            for (uint32_t x = r.x0; x <= r.x1; x++)
+                next[y * pass->tile_columns + x + 1]++;
+    }
+    for (uint32_t t = 0; t < pass->tile_count; t++)
+        next[t + 1] += next[t];
+    out->item = memory_array(next[pass->tile_count], sizeof *out->item);
+    if (!out->item)
+        return RESULT_NO_MEMORY;
+    for (size_t i = 0; i < list->count; i++) {
+        TileRange r = tiles_of(pass, &list->items[i]);
+        for (uint32_t y = r.y0; y <= r.y1; y++)
+            for (uint32_t x = r.x0; x <= r.x1; x++)
+                out->item[next[y * pass->tile_columns + x]++] = (uint32_t)i;
+    }
+    return RESULT_OK;
+}
+
+Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
+{
+    *out = (Pass){
+        .desc = desc,
+        .scene = scene,
+        .fused = !desc->unfused,
+        .depth_format = render_desc_depth(desc),
+        .layout = gbuffer_layout(desc->gbuffer),
+    };
+    Result result = view_build(scene, desc, &out->view);
+    if (result != RESULT_OK)
+        return result;
+    out->tile_columns = ((uint32_t)desc->width + TILE - 1) / TILE;
+    out->tile_count = out->tile_columns * (((uint32_t)desc->height + TILE - 1) / TILE);
+    out->pool = pool_create(desc->threads);
+    result = out->pool ? geometry_build(scene, &out->view, out->fused, out->pool, &out->geometry)
+                       : RESULT_NO_MEMORY;
+    if (result == RESULT_OK)
+        result = bin(out, &out->geometry.opaque, &out->opaque_bins);
+    if (result == RESULT_OK)
+        result = bin(out, &out->geometry.transparent, &out->transparent_bins);
+    if (result != RESULT_OK)
+        pass_free(out);
+    return result;
+}
+
+void pass_free(Pass *pass)
+{
+    free(pass->opaque_bins.first);
+    free(pass->opaque_bins.item);
+    free(pass->transparent_bins.first);
+    free(pass->transparent_bins.item);
+    geometry_free(&pass->geometry);
+    pool_destroy(pass->pool);
+    view_free(&pass->view);
+    *pass = (Pass){0};
+}
+
+uint64_t pass_bytes(const Pass *pass)
+{
+    const Geometry *geometry = &pass->geometry;
+    size_t items =
+        pass->opaque_bins.first[pass->tile_count] + pass->transparent_bins.first[pass->tile_count];
+    return geometry->vertex_count * sizeof(Vertex) +
+           (geometry->opaque.count + geometry->transparent.count) * sizeof(Primitive) +
+           items * sizeof(uint32_t);
+}
+
+PixelRect pass_tile_rect(const Pass *pass, uint32_t tile)
+{
+    int x0 = (int)(tile % pass->tile_columns) * TILE, y0 = (int)(tile / pass->tile_columns) * TILE;
+    int x1 = x0 + TILE - 1, y1 = y0 + TILE - 1;
+    return (PixelRect){x0, y0, x1 < pass->view.width ? x1 : pass->view.width - 1,
+                       y1 < pass->view.height ? y1 : pass->view.height - 1};
+}
+
+void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out)
+{
+    const Vertex *vertices = pass->geometry.vertices;
+    const Vertex *const corners[3] = {&vertices[primitive->vertex[0]],
+                                      &vertices[primitive->vertex[1]],
+                                      &vertices[primitive->vertex[2]]};
+    setup_triangle(corners, pass->view.draws[primitive->draw].flipped, pass->view.width,
+                   pass->view.height, out);
+}
+
+/* A smooth varying at a pixel: the plane of attribute/w, times w. */
+static float varying_at(const Pass *pass, const Setup *setup, const float values[3],
+                        float inverse_fragment_w, int x, int y)
+{
+    Plane plane = setup_plane(setup, op_mul(values[0], setup->corner[0]->window[3]),
+                              op_mul(values[1], setup->corner[1]->window[3]),
+                              op_mul(values[2], setup->corner[2]->window[3]));
+    return op_mul(plane_at(pass->fused, &plane, x, y), inverse_fragment_w);
+}
+
+void pass_fragment(const Pass *pass, const Setup *setup, const Primitive *primitive, int x, int y,
+                   Texel *out)
+{
+    const Draw *draw = &pass->view.draws[primitive->draw];
+    const Material *material = &pass->scene->materials[draw->material];
+    const Vertex *const *v = setup->corner;
+    Plane w = setup_plane(setup, v[0]->window[3], v[1]->window[3], v[2]->window[3]);
+    float inverse_w = op_div(1.0f, plane_at(pass->fused, &w, x, y));
+    float normal[3];
+    for (int i = 0; i < 3; i++) {
+        out->position[i] = varying_at(
+            pass, setup, (float[3]){v[0]->position[i], v[1]->position[i], v[2]->position[i]},
+            inverse_w, x, y);
+        normal[i] = varying_at(pass, setup,
+                               (float[3]){v[0]->normal[i], v[1]->normal[i], v[2]->normal[i]},
+                               inverse_w, x, y);
+    }
+    out->position[3] = 1.0f;
+
+    float scale = op_inversesqrt(op_max(op_dot3(normal, normal), SHADING_TINY));
+    bool turn = pass->desc->normals == NORMALS_FACED && !setup->front;
+    for (int i = 0; i < 3; i++) {
+        float n = op_mul(normal[i], scale);
+        out->normal[i] = turn ? op_neg(n) : n;
+        out->diffuse[i] = material->base_color[i];
+    }
+    out->normal[3] = 0.0f;
+    out->diffuse[3] = draw->transparent ? material->base_color[3] : 1.0f;
+    out->material[0] = material->roughness;
+    out->material[1] = material->metallic;
+    out->material[2] = material->occlusion;
+    out->material[3] = 0.0f;
+}
+
+void pass_counts_add(PassCounts *sum, const PassCounts *tile)
+{
+    sum->max = tile->max > sum->max ? tile->max : sum->max;
+    sum->fragments += tile->fragments;
+    sum->peeled += tile->peeled;
+    sum->repeated += tile->repeated;
+    sum->remaining += tile->remaining;
+    sum->residual_pixels += tile->residual_pixels;
+    sum->residual_max =
+        tile->residual_max > sum->residual_max ? tile->residual_max : sum->residual_max;
+}
+
+void pass_counts_report(const PassCounts *counts, Frame *frame)
+{
+    frame->layers.max = counts->max;
+    frame->layers.fragments = counts->fragments;
+    frame->layers.repeated = counts->repeated;
+    frame->layers.lost_to_pass_limit = counts->remaining;
+    frame->layers.lost_to_ties =
+        counts->fragments - (counts->peeled - counts->repeated) - counts->remaining;
+    frame->residual_max = counts->residual_max;
+    frame->residual_pixels = counts->residual_pixels;
+}
+
+float pass_background_weight(const Pass *pass, const float accum[4], float opaque_alpha)
+{
+    if (pass->desc->opaque_blend == OPAQUE_BLEND_SEED && opaque_alpha > SHADING_ALPHA_TEST)
+        return 0.0f;
+    return accum[3];
+}

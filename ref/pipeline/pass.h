@@ -1,0 +1,112 @@
+/* What both paths of the pipeline share: the frame's inputs, binned primitives, the fragment. */
+#ifndef PEEL_REF_PASS_H
+#define PEEL_REF_PASS_H
+
+#include "base/pool.h"
+#include "frame/frame.h"
+#include "frame/view.h"
+#include "ref/pipeline/buffers.h"
+#include "ref/pipeline/setup.h"
+
+enum { TILE = TRACE_TILE, TILE_PIXELS = TILE * TILE };
+#define PRIMITIVE_NONE UINT32_MAX
+
+/* Per tile, the indices of the primitives whose bounding box meets it, in draw order. */
+typedef struct Bins {
+    size_t *first;  /* tile_count + 1 */
+    uint32_t *item; /* indices into the list */
+} Bins;
+
+typedef struct Pass {
+    const RenderDesc *desc;
+    const Scene *scene;
+    View view;
+    Pool *pool;
+    Geometry geometry;
+    Bins opaque_bins, transparent_bins;
+    uint32_t tile_columns, tile_count;
+    bool fused;
+    PixelFormat depth_format;
+    GBufferLayout layout;
+} Pass;
+
+Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out);
+void pass_free(Pass *pass);
+uint64_t pass_bytes(const Pass *pass); /* of geometry and bins */
+
+/* The tile's pixels in window coordinates (y up). */
+PixelRect pass_tile_rect(const Pass *pass, uint32_t tile);
+
+void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out);
+
+/* The geometry pass's shader for one covered pixel: what it writes to its targets, unquantised. */
+void pass_fragment(const Pass *pass, const Setup *setup, const Primitive *primitive, int x, int y,
+                   Texel *out);
+
+/* Whether a transparent fragment at depth z (stored: key) is behind the stored opaque depth. */
+static inline bool pass_hidden(const Pass *pass, float z, uint32_t key, uint32_t opaque)
+{
+    if (pass->desc->peel_test == PEEL_TEST_RAW)
+        return z >= depth_fetch(pass->depth_format, opaque);
+    return key >= opaque;
+}
+
+/* Whether an earlier peel took it, or the layer in front of it. */
+static inline bool pass_peeled(const Pass *pass, float z, uint32_t key, uint32_t previous)
+{
+    if (pass->desc->peel_test == PEEL_TEST_RAW)
+        return z <= depth_fetch(pass->depth_format, previous);
+    return key <= previous;
+}
+
+static inline bool pass_depth_test(const Pass *pass, uint32_t key, uint32_t stored)
+{
+    return pass->desc->depth_func == DEPTH_LEQUAL ? key <= stored : key < stored;
+}
+
+/* Counts of one tile or of the frame; see LayerStats. */
+typedef struct PassCounts {
+    uint32_t max;
+    uint64_t fragments, peeled, repeated, remaining;
+    uint64_t residual_pixels;
+    float residual_max;
+} PassCounts;
+
+/* Whether fragments can lie behind the last of `peels` peels: the limit was reached, or the raw
+ * test went on repeating a layer. */
+static inline bool pass_may_leave(const Pass *pass, int peels, int limit)
+{
+    return peels > 0 && (peels == limit || pass->desc->peel_test == PEEL_TEST_RAW);
+}
+
+/* One pixel's transparent fragments in front of the opaque depth. */
+static inline void pass_count_fragments(PassCounts *counts, uint32_t fragments)
+{
+    counts->max = fragments > counts->max ? fragments : counts->max;
+    counts->fragments += fragments;
+}
+
+/* One pixel's fragments behind its last peel, and the transmittance in front of them. */
+static inline void pass_count_remaining(PassCounts *counts, uint32_t remaining, float transmittance)
+{
+    if (remaining == 0)
+        return;
+    counts->remaining += remaining;
+    counts->residual_pixels++;
+    if (transmittance > counts->residual_max)
+        counts->residual_max = transmittance;
+}
+
+void pass_counts_add(PassCounts *sum, const PassCounts *tile);
+void pass_counts_report(const PassCounts *counts, Frame *frame);
+
+/* The transmittance towards the background (see frame/shading.h, resolve). */
+float pass_background_weight(const Pass *pass, const float accum[4], float opaque_alpha);
+
+/* ---- the two paths; frame's images are allocated, rows from the top ---- */
+
+Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
+uint64_t peel_buffer_bytes(const Pass *pass); /* that peel_render will allocate */
+Result tile_render(Pass *pass, Frame *frame);
+
+#endif

@@ -1,0 +1,89 @@
+/* Triangle setup: edge functions in exact integers, plane equations in floats.
+ *
+ * A pixel is covered iff its centre is strictly inside all three edges, or on an edge that the
+ * fill rule gives to this triangle; vertices are snapped to 1/256 pixel, so shared edges are hit
+ * exactly once. Planes use the unsnapped window positions. It does not implement guard bands,
+ * polygon offset or per-sample coverage. Rules: NUMBERS.md, measured on llvmpipe. */
+#ifndef PEEL_REF_SETUP_H
+#define PEEL_REF_SETUP_H
+
+#include "number/op.h"
+#include "ref/pipeline/geometry.h"
+
+typedef enum Facing { FACING_NONE = 0, FACING_FRONT, FACING_BACK } Facing;
+
+/* Pixels x0 … x1 and y0 … y1, both ends included, window coordinates (y up). */
+typedef struct PixelRect {
+    int x0, y0, x1, y1;
+} PixelRect;
+
+/* Value at pixel (x, y): fma(dy, y, fma(dx, x, origin)), integer x and y. */
+typedef struct Plane {
+    float origin, dx, dy;
+} Plane;
+
+typedef struct Edge {
+    int64_t a, b, c; /* inside: c + 256·(b·y − a·x) > 0 */
+} Edge;
+
+typedef struct Setup {
+    const Vertex *corner[3]; /* reordered so that the snapped area is positive */
+    PixelRect box;
+    Edge edge[3];
+    bool front;
+    float dx01, dy01, dx20, dy20; /* differences over the doubled area */
+    float x_origin, y_origin;
+    Plane depth;
+} Setup;
+
+/* Sign of the snapped area: counter-clockwise in window space is front; flipped changes sides. */
+Facing setup_facing(const Vertex *const corners[3], bool flipped);
+
+/* Pixels that can be covered, inside width×height; empty when x0 > x1 or y0 > y1. */
+PixelRect setup_bounds(const Vertex *const corners[3], int width, int height);
+
+/* For a triangle whose facing is not FACING_NONE. */
+void setup_triangle(const Vertex *const corners[3], bool flipped, int width, int height,
+                    Setup *out);
+
+/* The plane through the values p[i] at setup->corner[i]. */
+Plane setup_plane(const Setup *setup, float p0, float p1, float p2);
+
+static inline float plane_at(bool fused, const Plane *plane, int x, int y)
+{
+    return op_muladd(fused, plane->dy, (float)y,
+                     op_muladd(fused, plane->dx, (float)x, plane->origin));
+}
+
+/* gl_FragCoord.z: the driver adds a polygon offset of +0, so that −0 becomes +0. */
+static inline float setup_depth_at(bool fused, const Setup *setup, int x, int y)
+{
+    return op_add(plane_at(fused, &setup->depth, x, y), 0.0f);
+}
+
+typedef void (*SetupVisit)(void *context, const Setup *setup, int x, int y);
+
+/* Calls visit for every covered pixel inside rect, row by row. Inlined into its caller, and visit
+ * with it when it is a known function. */
+static inline __attribute__((always_inline)) void setup_visit(const Setup *setup, PixelRect rect,
+                                                              SetupVisit visit, void *context)
+{
+    int x0 = setup->box.x0 > rect.x0 ? setup->box.x0 : rect.x0;
+    int y0 = setup->box.y0 > rect.y0 ? setup->box.y0 : rect.y0;
+    int x1 = setup->box.x1 < rect.x1 ? setup->box.x1 : rect.x1;
+    int y1 = setup->box.y1 < rect.y1 ? setup->box.y1 : rect.y1;
+    const Edge *e = setup->edge;
+    for (int y = y0; y <= y1; y++) {
+        int64_t value[3];
+        for (int i = 0; i < 3; i++)
+            value[i] = e[i].c + 256 * (e[i].b * y - e[i].a * x0);
+        for (int x = x0; x <= x1; x++) {
+            if (value[0] > 0 && value[1] > 0 && value[2] > 0)
+                visit(context, setup, x, y);
+            for (int i = 0; i < 3; i++)
+                value[i] -= 256 * e[i].a;
+        }
+    }
+}
+
+#endif

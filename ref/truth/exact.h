@@ -1,0 +1,34 @@
+/* The triangle as it is, neither clipped nor snapped: coverage, weights and depth at pixel
+ * centres, in double precision.
+ *
+ * Source: Olano, Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", Graphics
+ * Hardware 1997: with homogeneous edge functions no corner is ever divided by its w, so corners
+ * behind the eye need no clipping. */
+#ifndef PEEL_REF_TRUTH_EXACT_H
+#define PEEL_REF_TRUTH_EXACT_H
+
+#include <stdbool.h>
+
+/* A vertex in homogeneous window space: x/w and y/w in pixels, y up, pixel centres at +0.5;
+ * z/w from −1 (near) to 1 (far). */
+typedef struct Corner {
+    double x, y, z, w;
+} Corner;
+
+typedef struct ExactPoint {
+    double weight[3]; /* perspective-correct: what to mix the corners' attributes with; sum 1 */
+    double depth;     /* window depth of the triangle's plane, clamped to [0, 1] */
+    bool inside;      /* the pixel's centre is in the triangle and in the view volume */
+    bool clockwise;   /* the triangle's orientation, y up */
+} ExactPoint;
+
+/* At the centre of pixel (x, y), y up. Outside the triangle the weights extrapolate; where they
+ * cannot (the plane passes through the eye, or the point lies behind it) they are those of a
+ * nearby point of the triangle. Ties on an edge go by the same rule as in coverage.h: the pixel is
+ * inside when it lies right of the edge, or above a horizontal one.
+ *
+ * Error: the corners' own rounding (2^-53 relative) apart, weights are good to about 2^-50 · w /
+ * (triangle's size in pixels) for compact triangles; slivers lose their aspect ratio more. */
+void exact_at(const Corner *const corners[3], int x, int y, ExactPoint *out);
+
+#endif

@@ -1,0 +1,54 @@
+/* Every fragment of one tile: the nearest opaque one of each pixel, and the transparent ones in
+ * front of it, sorted.
+ *
+ * Order: by depth, then by primitive id: with DEPTH_LESS the earlier triangle is in front, with
+ * DEPTH_LEQUAL the later. Nothing is shaded here. */
+#ifndef PEEL_REF_TRUTH_FRAGMENTS_H
+#define PEEL_REF_TRUTH_FRAGMENTS_H
+
+#include "ref/truth/soup.h"
+
+enum {
+    FRAGMENTS_TILE_PIXELS = TRACE_TILE * TRACE_TILE
+};
+enum {
+    FRAGMENTS_NO_TRIANGLE = -1
+}; /* as a uint32_t */
+
+typedef struct Fragment {
+    double depth;      /* window depth in [0, 1] */
+    uint32_t triangle; /* in the soup's numbering; FRAGMENTS_NO_TRIANGLE: no fragment, depth 1 */
+    uint16_t pixel;    /* in the tile: row · TRACE_TILE + column, row 0 at the top */
+    bool back;         /* a back face, after mirroring */
+    bool unsure;       /* snapped and unsnapped coverage disagree here */
+} Fragment;
+
+/* One worker's scratch: reused from tile to tile. Zeroed is valid, but for limit_bytes. */
+typedef struct TileFragments {
+    size_t limit_bytes;                           /* for the lists below */
+    int x, y, width, height;                      /* the tile in the image, y from the top */
+    Fragment opaque[FRAGMENTS_TILE_PIXELS];       /* the nearest opaque fragment, one per pixel */
+    Fragment exact_opaque[FRAGMENTS_TILE_PIXELS]; /* the same under unsnapped coverage */
+    Fragment *list;                               /* transparent ones as they came */
+    size_t count, capacity;
+    Fragment *sorted; /* by pixel, then front to back: pixel p's are first[p] … first[p + 1] − 1 */
+    size_t sorted_capacity;
+    uint32_t first[FRAGMENTS_TILE_PIXELS + 1];
+    uint32_t deepest;          /* transparent fragments in the deepest pixel */
+    uint64_t coverage_differs; /* see truth.h */
+} TileFragments;
+
+/* Collects and sorts tile `tile` (row · soup->tile_columns + column). NO_MEMORY when the lists
+ * would take more than limit_bytes. */
+Result fragments_collect(const Soup *soup, const RenderDesc *desc, uint32_t tile,
+                         TileFragments *fragments);
+/* Frees the lists, not the struct. */
+void fragments_free(TileFragments *fragments);
+
+static inline size_t fragments_bytes(const TileFragments *fragments)
+{
+    return sizeof *fragments +
+           (fragments->capacity + fragments->sorted_capacity) * sizeof(Fragment);
+}
+
+#endif

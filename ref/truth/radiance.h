@@ -1,0 +1,22 @@
+/* frame/shading.h's lighting formula in double precision, and the display transform. */
+#ifndef PEEL_REF_TRUTH_RADIANCE_H
+#define PEEL_REF_TRUTH_RADIANCE_H
+
+#include "frame/view.h"
+
+#include <stdint.h>
+
+/* A point of a surface in view space. */
+typedef struct Surface {
+    double position[3];
+    double normal[3]; /* any length; normalised here */
+    const Material *material;
+} Surface;
+
+/* What the surface sends to the eye: linear, not multiplied by alpha. */
+void radiance_shade(const View *view, const Surface *surface, double rgb[3]);
+
+/* Linear radiance to one 8-bit display value: c/(c + 1), power, nearest even; NaN gives 0. */
+uint8_t radiance_display(double c);
+
+#endif

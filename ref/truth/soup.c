@@ -1,0 +1,239 @@
+#include "ref/truth/soup.h"
+
+#include "base/memory.h"
+#include "ref/truth/coverage.h"
+
+#include <stdlib.h>
+
+enum {
+    CHUNK = 4096
+}; /* vertices or triangles per task */
+
+/* Columns and rows of tiles, inclusive; empty when column_low > column_high. */
+typedef struct TileRange {
+    uint16_t column_low, column_high, row_low, row_high;
+} TileRange;
+
+typedef struct Build {
+    Soup *soup;
+    TileRange *ranges; /* one per triangle */
+} Build;
+
+Result soup_check_memory(size_t needed, size_t limit)
+{
+    if (needed <= limit)
+        return RESULT_OK;
+    return result_fail(RESULT_NO_MEMORY, "truth: needs %zu bytes, expected at most %zu", needed,
+                       limit);
+}
+
+/* ---- draws ------------------------------------------------------------------------------------
+ */
+
+static Result collect_draws(const Scene *scene, const View *view, size_t max_bytes, Soup *soup)
+{
+    soup->draws = memory_array(view->draw_count, sizeof *soup->draws);
+    if (!soup->draws)
+        return RESULT_NO_MEMORY;
+    uint64_t vertices = 0, triangles = 0;
+    for (size_t i = 0; i < view->draw_count; i++) {
+        const Draw *draw = &view->draws[i];
+        const Mesh *mesh = &scene->meshes[draw->mesh];
+        if (mesh->triangle_count == 0)
+            continue;
+        soup->draws[soup->draw_count++] = (SoupDraw){draw, mesh, &scene->materials[draw->material],
+                                                     vertices, (uint32_t)triangles};
+        vertices += mesh->vertex_count;
+        triangles += mesh->triangle_count;
+        if (triangles >= UINT32_MAX)
+            return result_fail(RESULT_UNSUPPORTED,
+                               "truth: %llu triangles, expected fewer than 2^32 - 1",
+                               (unsigned long long)triangles);
+    }
+    soup->vertex_count = vertices;
+    soup->triangle_count = (uint32_t)triangles;
+    size_t tiles = (size_t)soup->tile_columns * (size_t)soup->tile_rows;
+    soup->bytes = view->draw_count * sizeof *soup->draws + vertices * sizeof *soup->vertices +
+                  (tiles + 1) * sizeof *soup->tile_first;
+    return soup_check_memory(soup->bytes + triangles * sizeof(TileRange), max_bytes);
+}
+
+/* The last of the draws whose first vertex (or triangle) is not after index. */
+static const SoupDraw *find_draw(const Soup *soup, uint64_t index, bool by_vertex)
+{
+    size_t low = 0, high = soup->draw_count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        const SoupDraw *draw = &soup->draws[middle];
+        uint64_t first = by_vertex ? (uint64_t)draw->first_vertex : draw->first_triangle;
+        if (first <= index)
+            low = middle;
+        else
+            high = middle;
+    }
+    return &soup->draws[low];
+}
+
+const SoupDraw *soup_draw(const Soup *soup, uint32_t triangle)
+{
+    return find_draw(soup, triangle, false);
+}
+
+uint32_t soup_primitive(const Soup *soup, uint32_t triangle)
+{
+    const SoupDraw *draw = soup_draw(soup, triangle);
+    return draw->draw->first_primitive + (triangle - draw->first_triangle);
+}
+
+void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3])
+{
+    const SoupDraw *draw = soup_draw(soup, triangle);
+    const uint32_t *index = &draw->mesh->index[(size_t)(triangle - draw->first_triangle) * 3];
+    for (int i = 0; i < 3; i++)
+        out[i] = &soup->vertices[draw->first_vertex + index[i]];
+}
+
+/* ---- vertices ---------------------------------------------------------------------------------
+ */
+
+static SoupVertex transform(const View *view, const Draw *draw, const float *position,
+                            const float *normal)
+{
+    SoupVertex vertex;
+    for (int row = 0; row < 3; row++) {
+        double p = draw->model_view[12 + row], n = 0.0;
+        for (int column = 0; column < 3; column++) {
+            p += (double)draw->model_view[4 * column + row] * position[column];
+            n += (double)draw->normal_matrix[3 * column + row] * normal[column];
+        }
+        vertex.position[row] = p;
+        vertex.normal[row] = n;
+    }
+    double clip[4];
+    for (int row = 0; row < 4; row++) {
+        clip[row] = view->projection[12 + row];
+        for (int column = 0; column < 3; column++)
+            clip[row] += view->projection[4 * column + row] * vertex.position[column];
+    }
+    vertex.corner = (Corner){(clip[0] + clip[3]) * (0.5 * view->width),
+                             (clip[1] + clip[3]) * (0.5 * view->height), clip[2], clip[3]};
+    return vertex;
+}
+
+static Result vertex_task(void *context, uint32_t index, int worker)
+{
+    (void)worker;
+    Soup *soup = ((Build *)context)->soup;
+    size_t first = (size_t)index * CHUNK;
+    size_t end = first + CHUNK < soup->vertex_count ? first + CHUNK : soup->vertex_count;
+    const SoupDraw *draw = find_draw(soup, first, true);
+    for (size_t i = first; i < end; i++) {
+        while (i - draw->first_vertex >= draw->mesh->vertex_count)
+            draw++;
+        size_t local = 3 * (i - draw->first_vertex);
+        soup->vertices[i] = transform(soup->view, draw->draw, &draw->mesh->position[local],
+                                      &draw->mesh->normal[local]);
+    }
+    return RESULT_OK;
+}
+
+/* ---- tiles ------------------------------------------------------------------------------------
+ */
+
+static TileRange tile_range(const Soup *soup, uint32_t triangle)
+{
+    const SoupVertex *vertices[3];
+    soup_vertices(soup, triangle, vertices);
+    const Corner *corners[3] = {&vertices[0]->corner, &vertices[1]->corner, &vertices[2]->corner};
+    int width = soup->view->width, height = soup->view->height;
+    Coverage coverage;
+    if (!coverage_setup(corners, width, height, &coverage))
+        return (TileRange){1, 0, 1, 0};
+    return (TileRange){(uint16_t)(coverage.x_low / TRACE_TILE),
+                       (uint16_t)(coverage.x_high / TRACE_TILE),
+                       (uint16_t)((height - 1 - coverage.y_high) / TRACE_TILE),
+                       (uint16_t)((height - 1 - coverage.y_low) / TRACE_TILE)};
+}
+
+static Result range_task(void *context, uint32_t index, int worker)
+{
+    (void)worker;
+    Build *build = context;
+    uint32_t count = build->soup->triangle_count, first = index * CHUNK;
+    uint32_t end = count - first < CHUNK ? count : first + CHUNK;
+    for (uint32_t i = first; i < end; i++)
+        build->ranges[i] = tile_range(build->soup, i);
+    return RESULT_OK;
+}
+
+/* Counts, then fills: tile_first[t] is tile t's start when done. */
+static Result fill_tiles(Build *build, size_t max_bytes)
+{
+    Soup *soup = build->soup;
+    size_t columns = (size_t)soup->tile_columns, tiles = columns * (size_t)soup->tile_rows;
+    for (uint32_t i = 0; i < soup->triangle_count; i++) {
+        TileRange range = build->ranges[i];
+        for (size_t row = range.row_low; row <= range.row_high; row++)
+            for (size_t column = range.column_low; column <= range.column_high; column++)
+                soup->tile_first[row * columns + column]++;
+    }
+    uint64_t total = 0;
+    for (size_t tile = 0; tile < tiles; tile++) {
+        total += soup->tile_first[tile];
+        soup->tile_first[tile] = total; /* its end; filling backwards makes it its start */
+    }
+    soup->tile_first[tiles] = total;
+    soup->bytes += total * sizeof *soup->tile_triangles;
+    Result result =
+        soup_check_memory(soup->bytes + soup->triangle_count * sizeof(TileRange), max_bytes);
+    if (result != RESULT_OK)
+        return result;
+    soup->tile_triangles = memory_array(total, sizeof *soup->tile_triangles);
+    if (!soup->tile_triangles)
+        return RESULT_NO_MEMORY;
+    for (uint32_t i = soup->triangle_count; i-- > 0;) {
+        TileRange range = build->ranges[i];
+        for (size_t row = range.row_low; row <= range.row_high; row++)
+            for (size_t column = range.column_low; column <= range.column_high; column++)
+                soup->tile_triangles[--soup->tile_first[row * columns + column]] = i;
+    }
+    return RESULT_OK;
+}
+
+static uint32_t chunks(size_t count)
+{
+    return (uint32_t)((count + CHUNK - 1) / CHUNK);
+}
+
+Result soup_build(const Scene *scene, const View *view, Pool *pool, size_t max_bytes, Soup *out)
+{
+    *out = (Soup){.view = view,
+                  .tile_columns = (view->width + TRACE_TILE - 1) / TRACE_TILE,
+                  .tile_rows = (view->height + TRACE_TILE - 1) / TRACE_TILE};
+    Result result = collect_draws(scene, view, max_bytes, out);
+    if (result != RESULT_OK)
+        return result;
+    size_t tiles = (size_t)out->tile_columns * (size_t)out->tile_rows;
+    out->vertices = memory_array(out->vertex_count, sizeof *out->vertices);
+    out->tile_first = memory_array(tiles + 1, sizeof *out->tile_first);
+    Build build = {out, memory_array(out->triangle_count, sizeof(TileRange))};
+    if (!out->vertices || !out->tile_first || !build.ranges)
+        result = RESULT_NO_MEMORY;
+    if (result == RESULT_OK)
+        result = pool_run(pool, chunks(out->vertex_count), vertex_task, &build);
+    if (result == RESULT_OK)
+        result = pool_run(pool, chunks(out->triangle_count), range_task, &build);
+    if (result == RESULT_OK)
+        result = fill_tiles(&build, max_bytes);
+    free(build.ranges);
+    return result;
+}
+
+void soup_free(Soup *soup)
+{
+    free(soup->draws);
+    free(soup->vertices);
+    free(soup->tile_first);
+    free(soup->tile_triangles);
+    *soup = (Soup){0};
+}

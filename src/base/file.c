@@ -1,0 +1,189 @@
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static Result fail_write(const char *path, int error)
+{
+    return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
+}
+
+/* Creates a file beside path under a name that nobody uses. Not mkstemp, whose files only their
+ * owner may read. */
+static int create_temporary(const char *path, char **temporary)
+{
+    for (int attempt = 0; attempt < 100; attempt++) {
+        size_t size = strlen(path) + 64;
+        char *name = malloc(size);
+        if (!name)
+            return -1;
+        snprintf(name, size, "%s.%ld-%d.tmp", path, (long)getpid(), attempt);
+        int descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0) {
+            *temporary = name;
+            return descriptor;
+        }
+        int error = errno;
+        free(name);
+        errno = error;
+        if (error != EEXIST)
+            return -1;
+    }
+    return -1;
+}
+
+/* A device must not be replaced by a regular file; a symbolic link stays, its target changes. */
+static int open_target(FileWriter *writer)
+{
+    struct stat status;
+    if (stat(writer->path, &status) != 0) {
+        if (errno != ENOENT || !*writer->path)
+            return -1;
+        return create_temporary(writer->path, &writer->temporary);
+    }
+    if (S_ISDIR(status.st_mode)) {
+        errno = EISDIR;
+        return -1;
+    }
+    if (!S_ISREG(status.st_mode))
+        return open(writer->path, O_WRONLY | O_CLOEXEC);
+    char *resolved = realpath(writer->path, NULL);
+    if (!resolved)
+        return -1;
+    free(writer->path);
+    writer->path = resolved;
+    return create_temporary(writer->path, &writer->temporary);
+}
+
+static void release(FileWriter *writer)
+{
+    free(writer->path);
+    free(writer->temporary);
+    *writer = (FileWriter){0};
+}
+
+Result file_writer_open(const char *path, FileWriter *out)
+{
+    *out = (FileWriter){.path = strdup(path)};
+    if (!out->path)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
+    int descriptor = open_target(out);
+    if (descriptor >= 0) {
+        out->stream = fdopen(descriptor, "wb");
+        if (out->stream)
+            return RESULT_OK;
+    }
+    int error = errno;
+    if (descriptor >= 0)
+        close(descriptor);
+    if (out->temporary)
+        unlink(out->temporary);
+    release(out);
+    return fail_write(path, error);
+}
+
+/* Keeps the first error. */
+static Result note(FileWriter *writer, int error)
+{
+    if (!writer->error)
+        writer->error = error ? error : EIO;
+    return fail_write(writer->path, writer->error);
+}
+
+Result file_writer_put(FileWriter *writer, const void *data, size_t size)
+{
+    errno = 0;
+    if (writer->error || (size && fwrite(data, 1, size, writer->stream) != size))
+        return note(writer, errno);
+    return RESULT_OK;
+}
+
+Result file_writer_print(FileWriter *writer, const char *format, ...)
+{
+    errno = 0;
+    int printed = -1;
+    if (!writer->error) {
+        va_list arguments;
+        va_start(arguments, format);
+        printed = vfprintf(writer->stream, format, arguments);
+        va_end(arguments);
+    }
+    return printed < 0 ? note(writer, errno) : RESULT_OK;
+}
+
+Result file_writer_put_at(FileWriter *writer, const void *data, size_t size, uint64_t offset)
+{
+    if (writer->error)
+        return note(writer, 0);
+    const char *bytes = data;
+    while (size) {
+        ssize_t written = pwrite(fileno(writer->stream), bytes, size, (off_t)offset);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written <= 0)
+            return note(writer, written < 0 ? errno : ENOSPC);
+        bytes += written;
+        size -= (size_t)written;
+        offset += (uint64_t)written;
+    }
+    return RESULT_OK;
+}
+
+Result file_writer_close(FileWriter *writer, bool commit)
+{
+    if (!writer->stream)
+        return RESULT_OK;
+    Result result = RESULT_OK;
+    errno = 0;
+    if (fclose(writer->stream) != 0 && !writer->error)
+        writer->error = errno ? errno : EIO;
+    if (writer->temporary) {
+        if (commit && !writer->error && rename(writer->temporary, writer->path) != 0)
+            writer->error = errno;
+        if (!commit || writer->error)
+            unlink(writer->temporary);
+    }
+    if (commit && writer->error)
+        result = fail_write(writer->path, writer->error);
+    release(writer);
+    return result;
+}
+
+Result file_write(const char *path, const void *data, size_t size)
+{
+    FileWriter writer;
+    Result result = file_writer_open(path, &writer);
+    if (result != RESULT_OK)
+        return result;
+    file_writer_put(&writer, data, size);
+    return file_writer_close(&writer, true);
+}
+
+Result file_make_directories(const char *path)
+{
+    char *partial = strdup(path);
+    if (!partial)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
+    int error = *path ? 0 : ENOENT;
+    for (char *end = partial; !error && *end;) {
+        end += strspn(end, "/");
+        end += strcspn(end, "/");
+        char saved = *end;
+        *end = 0;
+        struct stat status;
+        if (stat(partial, &status) == 0)
+            error = S_ISDIR(status.st_mode) ? 0 : ENOTDIR;
+        else if (mkdir(partial, 0777) != 0 && errno != EEXIST)
+            error = errno;
+        *end = saved;
+    }
+    free(partial);
+    if (error)
+        return result_fail(RESULT_IO, "%s: cannot make this directory: %s", path, strerror(error));
+    return RESULT_OK;
+}

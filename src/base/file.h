@@ -1,0 +1,42 @@
+/* Files that appear whole or not at all: written to a temporary name in the target's directory,
+ * renamed into place when complete, removed otherwise. */
+#ifndef PEEL_BASE_FILE_H
+#define PEEL_BASE_FILE_H
+
+#include "base/result.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Owned by the caller between file_writer_open and file_writer_close; fields are private. */
+typedef struct FileWriter {
+    FILE *stream;
+    char *path;      /* the target, symbolic links followed */
+    char *temporary; /* NULL for a device or pipe, which is written directly */
+    int error;       /* errno of the first failure; 0 while all is well */
+} FileWriter;
+
+/* Starts writing path. IO with a message naming path when its directory is missing or refuses, or
+ * when path is a directory; *out then needs no close. */
+Result file_writer_open(const char *path, FileWriter *out);
+
+/* Appends. Failures stick: later calls do nothing, and file_writer_close reports the first one. */
+Result file_writer_put(FileWriter *writer, const void *data, size_t size);
+Result file_writer_print(FileWriter *writer, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Writes at a byte offset instead; not to be mixed with the appending calls. */
+Result file_writer_put_at(FileWriter *writer, const void *data, size_t size, uint64_t offset);
+
+/* Renames into place if commit is true and nothing failed, else removes the temporary. Frees the
+ * writer either way. The failure that decided is the result; OK when commit is false. */
+Result file_writer_close(FileWriter *writer, bool commit);
+
+/* size bytes as one file. */
+Result file_write(const char *path, const void *data, size_t size);
+
+/* Makes a directory and its parents where they are missing. */
+Result file_make_directories(const char *path);
+
+#endif

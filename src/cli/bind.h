@@ -1,0 +1,18 @@
+/* The one place that binds names to renderers and commands to functions. */
+#ifndef PEEL_CLI_BIND_H
+#define PEEL_CLI_BIND_H
+
+#include "frame/frame.h"
+#include "study/threeway.h"
+
+extern const Renderer bind_renderers[RENDERER_COUNT]; /* in the order of RENDERER_… */
+
+/* RENDERER_… by name, −1 when there is none. */
+int bind_find_renderer(const char *name);
+
+/* argv[0] is "peel <command>"; returns the exit code. */
+int cmd_render(int argc, char **argv);
+int cmd_compare(int argc, char **argv);
+int cmd_scenes(int argc, char **argv);
+
+#endif

@@ -1,0 +1,48 @@
+/* Options shared by the commands that render, and how a command line fails. */
+#ifndef PEEL_CLI_OPTIONS_H
+#define PEEL_CLI_OPTIONS_H
+
+#include "frame/render_desc.h"
+#include "scene/scene.h"
+
+#include <argp.h>
+
+/* The documented exit codes of all commands. */
+enum { EXIT_AGREE = 0, EXIT_DIFFER = 2, EXIT_BAD_INPUT = 4 };
+
+typedef enum FmaChoice { FMA_AUTO = 0, FMA_ON, FMA_OFF } FmaChoice;
+
+typedef struct RenderOptions {
+    const char *scene_path; /* the argument SCENE; NULL until it is parsed */
+    RenderDesc desc;
+    const char *camera; /* name or index; NULL: the first */
+    bool has_opacity, has_background, seed_profile;
+    double opacity, background[3];
+    FmaChoice fma;
+} RenderOptions;
+
+/* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */
+extern const struct argp options_render_argp;
+
+/* The defaults of the command line: 1280×720. */
+RenderOptions options_default(void);
+
+/* Parses a command's line. Returns 0, or EXIT_BAD_INPUT after a one-line message; --help and
+ * --version end the program with 0. */
+int options_parse(const struct argp *argp, int argc, char **argv, void *input);
+
+/* For parsers: one line on stderr, and the error code that options_parse turns into exit 4. */
+error_t options_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* The whole of text as a number in [low, high]; false otherwise. */
+bool options_integer(const char *text, long long low, long long high, long long *out);
+bool options_real(const char *text, double low, double high, double *out);
+
+/* Loads the scene (a file, or a built-in scene by name) and applies camera, opacity, background
+ * and arithmetic mode to it and options->desc. The caller frees the scene. */
+Result options_load_scene(RenderOptions *options, Scene *out);
+
+/* Prints "peel: <message>" and returns EXIT_BAD_INPUT. */
+int options_fail(Result result);
+
+#endif

@@ -1,0 +1,99 @@
+#include "compare/against.h"
+
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_diagnostic(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && strcmp(dot, ".primitive") == 0;
+}
+
+static Result add(Against *against, const char *name, BufferMetrics **out)
+{
+    Result result = memory_grow((void **)&against->buffers, &against->capacity,
+                                against->count + 1, sizeof *against->buffers);
+    if (result != RESULT_OK)
+        return result;
+    *out = &against->buffers[against->count++];
+    **out = (BufferMetrics){0};
+    snprintf((*out)->name, sizeof(*out)->name, "%s", name);
+    return RESULT_OK;
+}
+
+/* A buffer that only one side has: every value differs. */
+static void all_differ(BufferMetrics *metrics, PixelFormat format, int width, int height)
+{
+    metrics->values = (uint64_t)width * (uint64_t)height * (uint64_t)format_info(format)->channels;
+    metrics->differing = metrics->values;
+    metrics->max_ulp = UINT32_MAX;
+    metrics->has_first = true;
+}
+
+static Result put(TraceSink *sink, const TraceBuffer *buffer)
+{
+    Against *against = (Against *)sink;
+    if (is_diagnostic(buffer->name))
+        return RESULT_OK;
+    BufferMetrics *metrics;
+    Result result = add(against, buffer->name, &metrics);
+    if (result != RESULT_OK)
+        return result;
+    int index = store_find(against->reference, buffer->name);
+    const StoredBuffer *stored = index < 0 ? NULL : store_buffer(against->reference, index);
+    if (!stored || stored->format != buffer->format || stored->width != buffer->image_width ||
+        stored->height != buffer->image_height) {
+        all_differ(metrics, buffer->format, buffer->image_width, buffer->image_height);
+        if (stored)
+            against->seen[index] = true;
+        return RESULT_OK;
+    }
+    against->seen[index] = true;
+    size_t row_bytes = (size_t)buffer->width * format_pixel_bytes(buffer->format);
+    result = memory_grow((void **)&against->band, &against->band_capacity,
+                         row_bytes * TRACE_TILE, 1);
+    for (int y = 0; result == RESULT_OK && y < buffer->height; y += TRACE_TILE) {
+        int rows = buffer->height - y < TRACE_TILE ? buffer->height - y : TRACE_TILE;
+        result = store_read(against->reference, index, buffer->x, buffer->y + y, buffer->width,
+                            rows, against->band, row_bytes);
+        if (result == RESULT_OK)
+            metrics_buffer(metrics, buffer->format, buffer->x, buffer->y + y, buffer->width, rows,
+                           against->band, row_bytes,
+                           (const unsigned char *)buffer->pixels + (size_t)y * buffer->row_bytes,
+                           buffer->row_bytes);
+    }
+    return result;
+}
+
+Result against_create(const TraceStore *reference, Against *out)
+{
+    *out = (Against){.sink = {put}, .reference = reference};
+    out->seen = memory_array((size_t)store_count(reference), sizeof *out->seen);
+    return out->seen ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+Result against_finish(Against *against)
+{
+    for (int i = 0; i < store_count(against->reference); i++) {
+        const StoredBuffer *stored = store_buffer(against->reference, i);
+        if (against->seen[i] || is_diagnostic(stored->name))
+            continue;
+        BufferMetrics *metrics;
+        Result result = add(against, stored->name, &metrics);
+        if (result != RESULT_OK)
+            return result;
+        all_differ(metrics, stored->format, stored->width, stored->height);
+    }
+    return RESULT_OK;
+}
+
+void against_free(Against *against)
+{
+    free(against->buffers);
+    free(against->seen);
+    free(against->band);
+    *against = (Against){0};
+}

@@ -1,0 +1,19 @@
+/* Which fragments two renderers saw, and in which order: from their primitive buffers. */
+#ifndef PEEL_COMPARE_STRUCTURE_H
+#define PEEL_COMPARE_STRUCTURE_H
+
+#include "compare/store.h"
+
+typedef struct StructureCounts {
+    uint64_t order_inversions; /* adjacent fragments of a that b has in the other order */
+    uint64_t opaque_flips;     /* pixels whose opaque.primitive differs */
+    uint64_t only_a, only_b;   /* transparent fragments that one side has alone */
+} StructureCounts;
+
+/* Compares opaque.primitive and peel.K.primitive, K = 0, 1, …, of two stores of one size.
+ * same: width·height bytes, owned by the caller; set to 1 where the opaque triangle, the
+ * transparent fragments and their order agree, else to 0. */
+Result structure_compare(const TraceStore *a, const TraceStore *b, int width, int height,
+                         uint8_t *same, StructureCounts *out);
+
+#endif

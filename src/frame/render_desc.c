@@ -1,0 +1,13 @@
+#include "frame/render_desc.h"
+
+void render_desc_seed_profile(RenderDesc *desc)
+{
+    desc->gbuffer = GBUFFER_SEED;
+    desc->depth = FORMAT_D24;
+    desc->accum = FORMAT_RGBA16;
+    desc->depth_func = DEPTH_LEQUAL;
+    desc->peel_test = PEEL_TEST_RAW;
+    desc->cull = CULL_SEED;
+    desc->normals = NORMALS_KEPT;
+    desc->opaque_blend = OPAQUE_BLEND_SEED;
+}

@@ -1,0 +1,332 @@
+/* Reading. */
+#include "image/exr.h"
+
+#include "base/memory.h"
+#include "image/exr_core.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct Reader {
+    const char *path;
+    int descriptor;
+    int64_t size;
+    exr_context_t context;
+} Reader;
+
+static Result fail_reader(const Reader *reader, exr_result_t code)
+{
+    return result_fail(code == EXR_ERR_OUT_OF_MEMORY ? RESULT_NO_MEMORY : RESULT_BAD_INPUT,
+                       "%s: not a readable OpenEXR file: %s", reader->path, exr_message(code));
+}
+
+static int64_t read_at(exr_const_context_t context, void *user, void *buffer, uint64_t size,
+                       uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    (void)context;
+    (void)error;
+    const Reader *reader = user;
+    uint64_t done = 0;
+    while (done < size) {
+        ssize_t got =
+            pread(reader->descriptor, (char *)buffer + done, size - done, (off_t)(offset + done));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return -1;
+        if (got == 0)
+            break;
+        done += (uint64_t)got;
+    }
+    return (int64_t)done;
+}
+
+static int64_t file_size(exr_const_context_t context, void *user)
+{
+    (void)context;
+    return ((const Reader *)user)->size;
+}
+
+static void reader_close(Reader *reader)
+{
+    if (reader->context)
+        exr_finish(&reader->context);
+    if (reader->descriptor >= 0)
+        close(reader->descriptor);
+}
+
+/* On success the caller ends with reader_close. */
+static Result reader_open(const char *path, Reader *out)
+{
+    *out = (Reader){.path = path, .descriptor = open(path, O_RDONLY | O_CLOEXEC)};
+    struct stat status;
+    int error = 0;
+    if (out->descriptor < 0 || fstat(out->descriptor, &status) != 0)
+        error = errno;
+    else if (!S_ISREG(status.st_mode))
+        error = S_ISDIR(status.st_mode) ? EISDIR : ESPIPE;
+    if (error) {
+        reader_close(out);
+        return result_fail(RESULT_IO, "%s: cannot read this file: %s", path, strerror(error));
+    }
+    out->size = status.st_size;
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = exr_message_keep;
+    setup.user_data = out;
+    setup.read_fn = read_at;
+    setup.size_fn = file_size;
+    setup.max_image_width = setup.max_image_height = EXR_SIZE_MAX;
+    exr_message_clear();
+    exr_result_t code = exr_start_read(&out->context, path, &setup);
+    if (code == EXR_ERR_SUCCESS)
+        return RESULT_OK;
+    Result result = fail_reader(out, code);
+    reader_close(out);
+    return result;
+}
+
+/* The type of the channel called name; false when there is none. */
+static bool find_channel(const exr_attr_chlist_t *list, const char *name, exr_pixel_type_t *type)
+{
+    for (int i = 0; i < list->num_channels; i++)
+        if (strcmp(list->entries[i].name.str, name) == 0) {
+            *type = list->entries[i].pixel_type;
+            return true;
+        }
+    return false;
+}
+
+/* The format that the part says it holds, if its channels can hold it. */
+static bool declared_format(const Reader *reader, int part, const exr_attr_chlist_t *list,
+                            PixelFormat *out)
+{
+    const char *text;
+    int32_t length;
+    if (exr_attr_get_string(reader->context, part, EXR_FORMAT_ATTRIBUTE, &length, &text) !=
+        EXR_ERR_SUCCESS)
+        return false;
+    for (int f = 0; f < FORMAT_COUNT; f++) {
+        const char *name = format_info((PixelFormat)f)->name;
+        if ((size_t)length != strlen(name) || memcmp(text, name, strlen(name)) != 0)
+            continue;
+        ExrLayout layout = exr_layout((PixelFormat)f);
+        exr_pixel_type_t type;
+        for (int i = 0; i < layout.channels; i++)
+            if (!find_channel(list, exr_channel_name((PixelFormat)f, i), &type) ||
+                type != layout.type)
+                return false;
+        *out = (PixelFormat)f;
+        return list->num_channels == layout.channels;
+    }
+    return false;
+}
+
+/* Other programs' files: the format that keeps every value. */
+static Result guess_format(const Reader *reader, const exr_attr_chlist_t *list, PixelFormat *out)
+{
+    exr_pixel_type_t r, g, b, a;
+    if (find_channel(list, "R", &r) && find_channel(list, "G", &g) && find_channel(list, "B", &b)) {
+        if (!find_channel(list, "A", &a))
+            a = r;
+        bool integers = r == EXR_PIXEL_UINT || g == EXR_PIXEL_UINT || b == EXR_PIXEL_UINT ||
+                        a == EXR_PIXEL_UINT;
+        if (integers)
+            return result_fail(RESULT_UNSUPPORTED,
+                               "%s: integer colour channels without a %s attribute, expected "
+                               "float or half",
+                               reader->path, EXR_FORMAT_ATTRIBUTE);
+        bool halves = r == EXR_PIXEL_HALF && g == EXR_PIXEL_HALF && b == EXR_PIXEL_HALF &&
+                      a == EXR_PIXEL_HALF;
+        *out = halves ? FORMAT_RGBA16F : FORMAT_RGBA32F;
+        return RESULT_OK;
+    }
+    if (list->num_channels != 1)
+        return result_fail(RESULT_UNSUPPORTED,
+                           "%s: %d channels, expected R, G, B (A) or a single one", reader->path,
+                           list->num_channels);
+    *out = list->entries[0].pixel_type == EXR_PIXEL_UINT ? FORMAT_R32UI : FORMAT_D32F;
+    return RESULT_OK;
+}
+
+static Result part_format(const Reader *reader, int part, PixelFormat *out)
+{
+    exr_storage_t storage;
+    const exr_attr_chlist_t *list;
+    exr_result_t code = exr_get_storage(reader->context, part, &storage);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_channels(reader->context, part, &list);
+    if (code != EXR_ERR_SUCCESS)
+        return fail_reader(reader, code);
+    if (storage != EXR_STORAGE_SCANLINE)
+        return result_fail(RESULT_UNSUPPORTED,
+                           "%s: part %d is tiled or deep, expected flat scanlines", reader->path,
+                           part);
+    for (int i = 0; i < list->num_channels; i++)
+        if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1)
+            return result_fail(RESULT_UNSUPPORTED,
+                               "%s: channel %s is subsampled, expected one value per pixel",
+                               reader->path, list->entries[i].name.str);
+    if (declared_format(reader, part, list, out))
+        return RESULT_OK;
+    return guess_format(reader, list, out);
+}
+
+static void point_at(exr_decode_pipeline_t *pipeline, PixelFormat format, int width, uint8_t *rows)
+{
+    ExrLayout layout = exr_layout(format);
+    for (int i = 0; i < pipeline->channel_count; i++) {
+        exr_coding_channel_info_t *channel = &pipeline->channels[i];
+        int index = layout.channels == 1 ? 0 : exr_channel_index(format, channel->channel_name);
+        channel->user_bytes_per_element = (int16_t)layout.bytes;
+        channel->user_data_type = (uint16_t)layout.type;
+        channel->user_pixel_stride = layout.channels * layout.bytes;
+        channel->user_line_stride = width * layout.channels * layout.bytes;
+        channel->decode_to_ptr = index < 0 ? NULL : rows + index * layout.bytes;
+    }
+}
+
+/* EXR's 4-byte integers to what the format stores; false when one does not fit. */
+static bool narrow(const uint32_t *in, Image *image, int y, int rows)
+{
+    const FormatInfo *info = format_info(image->format);
+    size_t count = (size_t)rows * (size_t)image->width * (size_t)info->channels;
+    void *out = image_pixel(image, 0, y);
+    uint32_t greatest = 0;
+    for (size_t i = 0; i < count; i++) {
+        greatest = in[i] > greatest ? in[i] : greatest;
+        if (info->channel_bytes == 1)
+            ((uint8_t *)out)[i] = (uint8_t)in[i];
+        else if (info->channel_bytes == 2)
+            ((uint16_t *)out)[i] = (uint16_t)in[i];
+        else
+            ((uint32_t *)out)[i] = in[i];
+    }
+    return greatest <= info->unorm_max;
+}
+
+/* scratch: room for one chunk, for formats that need narrow(). */
+static Result read_chunks(const Reader *reader, int part, int first_y, int chunk_rows,
+                          uint32_t *scratch, exr_decode_pipeline_t *pipeline, Image *image)
+{
+    exr_context_t context = reader->context;
+    for (int y = 0; y < image->height; y += chunk_rows) {
+        exr_chunk_info_t chunk;
+        exr_result_t code = exr_read_scanline_chunk_info(context, part, first_y + y, &chunk);
+        if (code == EXR_ERR_SUCCESS)
+            code = y ? exr_decoding_update(context, part, &chunk, pipeline)
+                     : exr_decoding_initialize(context, part, &chunk, pipeline);
+        if (code == EXR_ERR_SUCCESS &&
+            (chunk.width != image->width || chunk.height > image->height - y ||
+             chunk.height > chunk_rows))
+            code = EXR_ERR_BAD_CHUNK_LEADER;
+        if (code != EXR_ERR_SUCCESS)
+            return fail_reader(reader, code);
+        point_at(pipeline, image->format, image->width,
+                 scratch ? (uint8_t *)scratch : image_pixel(image, 0, y));
+        if (y == 0)
+            code = exr_decoding_choose_default_routines(context, part, pipeline);
+        if (code == EXR_ERR_SUCCESS)
+            code = exr_decoding_run(context, part, pipeline);
+        if (code != EXR_ERR_SUCCESS)
+            return fail_reader(reader, code);
+        if (scratch && !narrow(scratch, image, y, chunk.height))
+            return result_fail(RESULT_BAD_INPUT, "%s: part %d holds integers beyond the %s range",
+                               reader->path, part, format_info(image->format)->name);
+    }
+    return RESULT_OK;
+}
+
+/* Files without A are opaque. */
+static void fill_alpha(const exr_attr_chlist_t *list, Image *image)
+{
+    exr_pixel_type_t type;
+    if (format_info(image->format)->channels != 4 || find_channel(list, "A", &type))
+        return;
+    size_t count = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++)
+        if (image->format == FORMAT_RGBA32F)
+            ((float *)image->pixels)[4 * i + 3] = 1.0f;
+        else
+            ((uint16_t *)image->pixels)[4 * i + 3] = 0x3c00;
+}
+
+static Result read_part(const Reader *reader, int part, Image *out)
+{
+    PixelFormat format = FORMAT_RGBA32F;
+    Result result = part_format(reader, part, &format);
+    if (result != RESULT_OK)
+        return result;
+    exr_attr_box2i_t window;
+    int32_t chunk_rows;
+    const exr_attr_chlist_t *list;
+    exr_result_t code = exr_get_data_window(reader->context, part, &window);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_scanlines_per_chunk(reader->context, part, &chunk_rows);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_channels(reader->context, part, &list);
+    if (code != EXR_ERR_SUCCESS)
+        return fail_reader(reader, code);
+    int64_t width = (int64_t)window.max.x - window.min.x + 1;
+    int64_t height = (int64_t)window.max.y - window.min.y + 1;
+    if (width < 1 || width > EXR_SIZE_MAX || height < 1 || height > EXR_SIZE_MAX || chunk_rows < 1)
+        return result_fail(RESULT_BAD_INPUT, "%s: part %d has a size that is not 1 to %d pixels",
+                           reader->path, part, (int)EXR_SIZE_MAX);
+    result = image_create((int)width, (int)height, format, out);
+    if (result != RESULT_OK)
+        return result;
+    uint32_t *scratch = NULL;
+    if (format_info(format)->kind == KIND_UNORM) {
+        scratch = memory_array((size_t)chunk_rows * (size_t)width * 4, sizeof *scratch);
+        if (!scratch)
+            return RESULT_NO_MEMORY;
+    }
+    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+    result = read_chunks(reader, part, window.min.y, chunk_rows, scratch, &pipeline, out);
+    exr_decoding_destroy(reader->context, &pipeline);
+    free(scratch);
+    fill_alpha(list, out);
+    return result;
+}
+
+Result exr_part_count(const char *path, int *count)
+{
+    *count = 0;
+    Reader reader;
+    Result result = reader_open(path, &reader);
+    if (result != RESULT_OK)
+        return result;
+    exr_result_t code = exr_get_count(reader.context, count);
+    if (code != EXR_ERR_SUCCESS)
+        result = fail_reader(&reader, code);
+    reader_close(&reader);
+    return result;
+}
+
+Result exr_read(const char *path, int part, Image *out, char name[64])
+{
+    *out = (Image){0};
+    name[0] = 0;
+    Reader reader;
+    Result result = reader_open(path, &reader);
+    if (result != RESULT_OK)
+        return result;
+    int count = 0;
+    const char *text;
+    exr_get_count(reader.context, &count);
+    if (part < 0 || part >= count)
+        result =
+            result_fail(RESULT_BAD_INPUT, "%s: no part %d, the file has %d", path, part, count);
+    else
+        result = read_part(&reader, part, out);
+    if (result != RESULT_OK)
+        image_free(out);
+    else if (exr_get_name(reader.context, part, &text) == EXR_ERR_SUCCESS && text)
+        snprintf(name, 64, "%s", text);
+    reader_close(&reader);
+    return result;
+}

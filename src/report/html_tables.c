@@ -1,0 +1,221 @@
+#include "report/html_tables.h"
+
+#include "report/summary.h"
+
+#include <string.h>
+
+void html_text(FileWriter *page, const char *text)
+{
+    for (const char *c = text; *c; c++) {
+        const char *entity = NULL;
+        switch (*c) {
+        case '&':
+            entity = "&amp;";
+            break;
+        case '<':
+            entity = "&lt;";
+            break;
+        case '>':
+            entity = "&gt;";
+            break;
+        case '"':
+            entity = "&quot;";
+            break;
+        case '\'':
+            entity = "&#39;";
+            break;
+        default:
+            if ((unsigned char)*c < 32 && *c != '\t' && *c != '\n')
+                entity = "&#65533;";
+        }
+        if (entity)
+            file_writer_put(page, entity, strlen(entity));
+        else
+            file_writer_put(page, c, 1);
+    }
+}
+
+static void open_table(FileWriter *page, const char *caption, const char *const *columns, int count)
+{
+    file_writer_print(page,
+                      "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"%s\">\n"
+                      "<table>\n<caption>%s</caption>\n<thead><tr>",
+                      caption, caption);
+    for (int i = 0; i < count; i++)
+        file_writer_print(page, "<th scope=\"col\">%s</th>", columns[i]);
+    file_writer_print(page, "</tr></thead>\n<tbody>\n");
+}
+
+static void close_table(FileWriter *page)
+{
+    file_writer_print(page, "</tbody>\n</table>\n</div>\n");
+}
+
+static void open_row(FileWriter *page, const char *class, const char *name)
+{
+    file_writer_print(page, "<tr%s><th scope=\"row\">", class);
+    html_text(page, name);
+    file_writer_print(page, "</th>");
+}
+
+static const char *pair_name(const PairReport *pair, char out[SUMMARY_NUMBER])
+{
+    snprintf(out, SUMMARY_NUMBER, "%s \u2212 %s", threeway_renderer_name(pair->a),
+             threeway_renderer_name(pair->b));
+    return out;
+}
+
+static void put_settings(FileWriter *page, const Threeway *report)
+{
+    SummarySetting settings[SUMMARY_SETTINGS];
+    int count = summary_settings(report, settings);
+    file_writer_print(page, "<section aria-labelledby=\"settings\">\n"
+                            "<h2 id=\"settings\">Settings</h2>\n<dl class=\"settings\">\n");
+    for (int i = 0; i < count; i++) {
+        file_writer_print(page, "<div><dt>%s</dt><dd>", settings[i].name);
+        html_text(page, settings[i].value);
+        file_writer_print(page, "</dd></div>\n");
+    }
+    file_writer_print(page, "</dl>\n</section>\n");
+}
+
+static size_t put_buffer_rows(FileWriter *page, const PairReport *pair)
+{
+    char values[SUMMARY_NUMBER], differing[SUMMARY_NUMBER], ulp[SUMMARY_NUMBER];
+    char difference[SUMMARY_NUMBER];
+    size_t cursor = 0, folded = 0;
+    SummaryRow row;
+    while (summary_row(pair, &cursor, &row)) {
+        open_row(page, row.differing ? " class=\"off\"" : "", row.label);
+        file_writer_print(page, "<td>%zu</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>",
+                          row.buffers, summary_count(row.values, values),
+                          summary_count(row.differing, differing), summary_ulp(row.max_ulp, ulp),
+                          summary_real(row.max_abs, difference));
+        if (row.has_first)
+            file_writer_print(page, "x&nbsp;%d, y&nbsp;%d, channel&nbsp;%d", row.first[0],
+                              row.first[1], row.first[2]);
+        file_writer_print(page, "</td><td>%s</td></tr>\n", row.differing ? "differs" : "equal");
+        folded += row.buffers > 1 ? row.buffers : 0;
+    }
+    return folded;
+}
+
+static void put_buffers(FileWriter *page, const Threeway *report)
+{
+    static const char *const columns[] = {"Buffer",  "Buffers", "Values", "Differing",
+                                          "Max ULP", "Max abs", "First",  "Result"};
+    const PairReport *pair = &report->pairs[0];
+    char values[SUMMARY_NUMBER], differing[SUMMARY_NUMBER];
+    SummaryTotals totals = summary_totals(pair);
+    file_writer_print(page, "<section aria-labelledby=\"buffers\">\n"
+                            "<h2 id=\"buffers\">Buffer by buffer</h2>\n"
+                            "<p>Every value that ref and gl store on the way to the image, "
+                            "compared by its bits.</p>\n");
+    open_table(page, "ref against gl", columns, 8);
+    size_t folded = put_buffer_rows(page, pair);
+    file_writer_print(page,
+                      "</tbody>\n<tfoot><tr><th scope=\"row\">all</th><td>%zu</td><td>%s</td>"
+                      "<td>%s</td><td></td><td></td><td></td><td>%s</td></tr></tfoot>\n</table>\n"
+                      "</div>\n",
+                      totals.buffers, summary_count(totals.values, values),
+                      summary_count(totals.values_differing, differing),
+                      totals.values_differing ? "differs" : "equal");
+    if (folded)
+        file_writer_print(page,
+                          "<p>%zu equal buffers are folded into runs; every buffer that differs "
+                          "has its own row.</p>\n",
+                          folded);
+    file_writer_print(page, "</section>\n");
+}
+
+static void put_final_table(FileWriter *page, const Threeway *report)
+{
+    static const char *const columns[] = {"Pair", "Pixels", "Differing", "Max abs",   "Mean abs",
+                                          "RMSE", "PSNR",   "Max ULP",   "Not finite"};
+    char name[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER], differing[SUMMARY_NUMBER];
+    char a[SUMMARY_NUMBER], b[SUMMARY_NUMBER], c[SUMMARY_NUMBER], d[SUMMARY_NUMBER];
+    char ulp[SUMMARY_NUMBER], nonfinite[SUMMARY_NUMBER];
+    open_table(page, "Final image, all pixels", columns, 9);
+    for (int i = 0; i < 3; i++) {
+        const FinalMetrics *final = &report->pairs[i].final;
+        open_row(page, "", pair_name(&report->pairs[i], name));
+        file_writer_print(
+            page,
+            "<td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td>"
+            "<td>%s</td><td>%s</td></tr>\n",
+            summary_count(final->pixels, pixels), summary_count(final->differing, differing),
+            summary_real(final->max_abs, a), summary_real(final->mean_abs, b),
+            summary_real(final->rmse, c), summary_psnr(final->psnr, d),
+            summary_ulp(final->max_ulp, ulp), summary_count(final->nonfinite, nonfinite));
+    }
+    close_table(page);
+}
+
+static void put_unaffected_table(FileWriter *page, const Threeway *report)
+{
+    static const char *const columns[] = {"Pair", "Pixels", "Max abs", "Max relative",
+                                          "99th percentile"};
+    char name[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER];
+    char a[SUMMARY_NUMBER], b[SUMMARY_NUMBER], c[SUMMARY_NUMBER];
+    open_table(page, "Final image, pixels with the same structure", columns, 5);
+    for (int i = 0; i < 3; i++) {
+        const UnaffectedMetrics *unaffected = &report->pairs[i].unaffected;
+        if (!report->pairs[i].has_unaffected)
+            continue;
+        open_row(page, "", pair_name(&report->pairs[i], name));
+        file_writer_print(
+            page, "<td>%s</td><td>%s</td><td>%s</td><td>%s</td></tr>\n",
+            summary_count(unaffected->pixels, pixels), summary_real(unaffected->max_abs, a),
+            summary_real(unaffected->max_rel, b), summary_real(unaffected->p99_rel, c));
+    }
+    close_table(page);
+}
+
+static void put_layers(FileWriter *page, const Threeway *report)
+{
+    static const char *const columns[] = {"Layers", "Count"};
+    SummaryLayer layers[SUMMARY_LAYERS];
+    char value[SUMMARY_NUMBER];
+    summary_layers(report, layers);
+    open_table(page, "Layers: ref's fragments, judged by truth", columns, 2);
+    for (int i = 0; i < SUMMARY_LAYERS; i++) {
+        open_row(page, "", layers[i].text);
+        file_writer_print(page, "<td>%s</td></tr>\n", summary_count(layers[i].value, value));
+    }
+    close_table(page);
+}
+
+static void put_times(FileWriter *page, const Threeway *report)
+{
+    static const char *const columns[] = {"Renderer", "Wall ms", "CPU ms", "Threads",
+                                          "Peels",    "Buffers", "Made by"};
+    open_table(page, "Times and memory", columns, 7);
+    for (int i = 0; i < RENDERER_COUNT; i++) {
+        const Frame *frame = &report->frames[i];
+        open_row(page, "", threeway_renderer_name(i));
+        file_writer_print(page,
+                          "<td>%.1f</td><td>%.1f</td><td>%d</td><td>%d</td><td>%.1f MiB</td>"
+                          "<td class=\"words\">",
+                          frame->time_ms, frame->cpu_ms, frame->threads, frame->peels,
+                          (double)frame->buffer_bytes / 1048576.0);
+        html_text(page, frame->version);
+        if (frame->version[0] && frame->renderer[0])
+            file_writer_print(page, "<br>");
+        html_text(page, frame->renderer);
+        file_writer_print(page, "</td></tr>\n");
+    }
+    close_table(page);
+}
+
+void html_tables(FileWriter *page, const Threeway *report)
+{
+    put_buffers(page, report);
+    file_writer_print(page, "<section aria-labelledby=\"figures\">\n"
+                            "<h2 id=\"figures\">Figures</h2>\n");
+    put_final_table(page, report);
+    put_unaffected_table(page, report);
+    put_layers(page, report);
+    put_times(page, report);
+    file_writer_print(page, "</section>\n");
+    put_settings(page, report);
+}

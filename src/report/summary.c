@@ -1,0 +1,231 @@
+#include "report/summary.h"
+
+#include "frame/method.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *summary_count(uint64_t value, char out[SUMMARY_NUMBER])
+{
+    char digits[24];
+    int length = snprintf(digits, sizeof digits, "%" PRIu64, value);
+    char *end = out;
+    for (int i = 0; i < length; i++) {
+        if (i && (length - i) % 3 == 0)
+            *end++ = ',';
+        *end++ = digits[i];
+    }
+    *end = 0;
+    return out;
+}
+
+const char *summary_real(double value, char out[SUMMARY_NUMBER])
+{
+    snprintf(out, SUMMARY_NUMBER, "%.3g", value);
+    return out;
+}
+
+const char *summary_ulp(uint32_t value, char out[SUMMARY_NUMBER])
+{
+    if (value != UINT32_MAX)
+        return summary_count(value, out);
+    snprintf(out, SUMMARY_NUMBER, "NaN");
+    return out;
+}
+
+const char *summary_psnr(double value, char out[SUMMARY_NUMBER])
+{
+    if (isinf(value) && value > 0)
+        snprintf(out, SUMMARY_NUMBER, "equal");
+    else
+        snprintf(out, SUMMARY_NUMBER, "%.1f dB", value);
+    return out;
+}
+
+static bool row_folds(const PairReport *pair, size_t begin, size_t *end)
+{
+    *end = begin;
+    while (*end < pair->buffer_count && pair->buffers[*end].differing == 0)
+        ++*end;
+    return pair->buffer_count > SUMMARY_UNFOLDED && *end - begin >= 3;
+}
+
+bool summary_row(const PairReport *pair, size_t *cursor, SummaryRow *out)
+{
+    size_t begin = *cursor, end;
+    if (begin >= pair->buffer_count)
+        return false;
+    const BufferMetrics *first = &pair->buffers[begin];
+    *out = (SummaryRow){.buffers = 1,
+                        .values = first->values,
+                        .differing = first->differing,
+                        .max_ulp = first->max_ulp,
+                        .max_abs = first->max_abs,
+                        .has_first = first->has_first};
+    memcpy(out->first, first->first, sizeof out->first);
+    if (!row_folds(pair, begin, &end)) {
+        snprintf(out->label, sizeof out->label, "%s", first->name);
+        *cursor = begin + 1;
+        return true;
+    }
+    out->buffers = end - begin;
+    for (size_t i = begin + 1; i < end; i++)
+        out->values += pair->buffers[i].values;
+    snprintf(out->label, sizeof out->label, "%s to %s", first->name, pair->buffers[end - 1].name);
+    *cursor = end;
+    return true;
+}
+
+SummaryTotals summary_totals(const PairReport *pair)
+{
+    SummaryTotals totals = {.buffers = pair->buffer_count};
+    for (size_t i = 0; i < pair->buffer_count; i++) {
+        const BufferMetrics *buffer = &pair->buffers[i];
+        totals.values += buffer->values;
+        totals.values_differing += buffer->differing;
+        totals.buffers_differing += buffer->differing != 0;
+        if (buffer->differing && !totals.first)
+            totals.first = buffer;
+    }
+    return totals;
+}
+
+static void describe_passes(const Threeway *report, char *out, size_t size)
+{
+    int peels = report->frames[RENDERER_REF].peels;
+    if (report->desc.passes)
+        snprintf(out, size, "%d, limit %d", peels, report->desc.passes);
+    else
+        snprintf(out, size, "%d, until a peel yields no fragment", peels);
+}
+
+static void describe_lights(const Threeway *report, char *out, size_t size)
+{
+    if (report->desc.lights > 0)
+        snprintf(out, size, "first %d", report->desc.lights);
+    else
+        snprintf(out, size, "%s", report->desc.lights < 0 ? "none" : "all of the scene");
+}
+
+int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS])
+{
+    static const char *const culls[] = {"as glTF says", "opaque only (seed)", "none"};
+    const RenderDesc *desc = &report->desc;
+    int n = 0;
+#define SETTING(label, ...)                                                                        \
+    do {                                                                                           \
+        out[n].name = label;                                                                       \
+        snprintf(out[n++].value, sizeof out[0].value, __VA_ARGS__);                                \
+    } while (0)
+    SETTING("Size", "%d × %d", desc->width, desc->height);
+    SETTING("Method", "%s", method_info(desc->method)->name);
+    out[n].name = "Peels";
+    describe_passes(report, out[n].value, sizeof out[n].value);
+    n++;
+    out[n].name = "Lights";
+    describe_lights(report, out[n].value, sizeof out[n].value);
+    n++;
+    SETTING("Camera", "%d", desc->camera);
+    SETTING("Time", "%g s", desc->time);
+    SETTING("Profile", "%s", report->seed_profile ? "seed" : "default");
+    SETTING("Depth", "%s, %s", format_info(render_desc_depth(desc))->name,
+            desc->depth_func == DEPTH_LEQUAL ? "lequal" : "less");
+    SETTING("Accumulation", "%s", format_info(desc->accum)->name);
+    SETTING("G-buffer", "%s", desc->gbuffer == GBUFFER_SEED ? "seed" : "full");
+    SETTING("Peel test", "%s", desc->peel_test == PEEL_TEST_RAW ? "raw" : "stored");
+    SETTING("Culling", "%s", culls[desc->cull]);
+    SETTING("Normals", "%s", desc->normals == NORMALS_KEPT ? "kept" : "faced");
+    SETTING("Arithmetic", "%s",
+            report->frames[RENDERER_REF].fused ? "fused multiply-add" : "separate multiply, add");
+    SETTING("Tolerance", "%g", report->tolerance);
+#undef SETTING
+    return n;
+}
+
+void summary_pair_exact(const Threeway *report, char out[SUMMARY_LINE])
+{
+    const PairReport *pair = &report->pairs[0];
+    SummaryTotals totals = summary_totals(pair);
+    char values[SUMMARY_NUMBER], differing[SUMMARY_NUMBER];
+    summary_count(totals.values, values);
+    summary_count(totals.values_differing, differing);
+    if (totals.first)
+        snprintf(out, SUMMARY_LINE,
+                 "ref and gl differ in %s of %s values, in %zu of %zu buffers; first in %s at "
+                 "x %d, y %d, channel %d.",
+                 differing, values, totals.buffers_differing, totals.buffers, totals.first->name,
+                 totals.first->first[0], totals.first->first[1], totals.first->first[2]);
+    else if (pair->final.differing)
+        snprintf(out, SUMMARY_LINE,
+                 "ref and gl agree bit for bit in %zu buffers, but their final images differ in "
+                 "%s pixels.",
+                 totals.buffers, summary_count(pair->final.differing, differing));
+    else
+        snprintf(out, SUMMARY_LINE, "ref and gl agree bit for bit: %s values in %zu buffers.",
+                 values, totals.buffers);
+}
+
+void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
+{
+    const PairReport *pair = &report->pairs[1];
+    const UnaffectedMetrics *unaffected = &pair->unaffected;
+    if (!unaffected->pixels) {
+        snprintf(out, SUMMARY_LINE,
+                 "ref and truth cannot be compared: no pixel has the same fragments in the same "
+                 "order on both sides.");
+        return;
+    }
+    char p99[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER];
+    double share = 100.0 * (double)unaffected->pixels /
+                   (double)(pair->final.pixels ? pair->final.pixels : unaffected->pixels);
+    snprintf(out, SUMMARY_LINE,
+             "ref and truth %s: 99th percentile of the relative difference %s (tolerance %g) over "
+             "%s pixels with the same fragments in the same order (%.2f %%).",
+             unaffected->p99_rel <= report->tolerance ? "agree" : "differ",
+             summary_real(unaffected->p99_rel, p99), report->tolerance,
+             summary_count(unaffected->pixels, pixels), share);
+}
+
+void summary_residual(const Threeway *report, char out[SUMMARY_LINE])
+{
+    const Frame *frame = &report->frames[RENDERER_REF];
+    char pixels[SUMMARY_NUMBER];
+    out[0] = 0;
+    if (frame->residual_pixels)
+        snprintf(out, SUMMARY_LINE,
+                 "The pass limit hides fragments in %s pixels; up to %.3g of their light would "
+                 "still pass (residual transmittance).",
+                 summary_count(frame->residual_pixels, pixels), frame->residual_max);
+}
+
+void summary_speed(const Threeway *report, char out[SUMMARY_LINE])
+{
+    double ref = report->frames[RENDERER_REF].time_ms, gl = report->frames[RENDERER_GL].time_ms;
+    out[0] = 0;
+    if (ref > 0 && gl > 0)
+        snprintf(out, SUMMARY_LINE, "gl took %.2f times the wall time of ref.", gl / ref);
+}
+
+void summary_layers(const Threeway *report, SummaryLayer out[SUMMARY_LAYERS])
+{
+    const StructureReport *structure = &report->structure;
+    const LayerStats *layers = &structure->layers;
+    const SummaryLayer rows[SUMMARY_LAYERS] = {
+        {"max", "most transparent fragments in one pixel", layers->max},
+        {"fragments", "transparent fragments in front of the opaque depth", layers->fragments},
+        {"lost_to_ties", "of those never peeled: equal depth", layers->lost_to_ties},
+        {"lost_to_pass_limit", "of those never peeled: passes ended first",
+         layers->lost_to_pass_limit},
+        {"order_inversions", "neighbours that truth orders the other way",
+         structure->order_inversions},
+        {"coverage_differs", "fragments that exact, unsnapped coverage would change",
+         layers->coverage_differs},
+        {"opaque_flips", "pixels whose nearest opaque triangle differs", structure->opaque_flips},
+        {"repeated", "peeled again at the depth of the previous peel", layers->repeated},
+        {"set_differs", "fragments that only one side has, ties and limit apart",
+         structure->set_differs},
+    };
+    memcpy(out, rows, sizeof rows);
+}

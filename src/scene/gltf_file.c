@@ -1,0 +1,132 @@
+#include "scene/gltf_file.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Source: glTF 2.0, 4.4 (binary glTF layout). */
+#define GLB_MAGIC 0x46546c67u
+#define GLB_JSON  0x4e4f534au
+#define GLB_BIN   0x004e4942u
+
+Result gltf_file_read(const char *path, unsigned char **bytes, size_t *count)
+{
+    struct stat info;
+    /* Looked at before it is opened: opening a pipe would wait for its other end. */
+    if (stat(path, &info))
+        return result_fail(RESULT_IO, "%s: cannot read: %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode))
+        return result_fail(RESULT_BAD_INPUT, "%s: not a regular file", path);
+    if ((uint64_t)info.st_size > UINT32_MAX)
+        return result_fail(RESULT_BAD_INPUT, "%s: larger than 4 GiB", path);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return result_fail(RESULT_IO, "%s: cannot read: %s", path, strerror(errno));
+    *count = (size_t)info.st_size;
+    *bytes = memory_array(*count + 1, 1);
+    Result result = *bytes ? RESULT_OK : RESULT_NO_MEMORY;
+    if (!result && fread(*bytes, 1, *count, file) != *count) {
+        result = result_fail(RESULT_IO, "%s: cannot read all of its %zu bytes", path, *count);
+        free(*bytes);
+        *bytes = NULL;
+    }
+    fclose(file);
+    return result;
+}
+
+int gltf_file_kind(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    if (dot && strcasecmp(dot, ".glb") == 0)
+        return 1;
+    return dot && strcasecmp(dot, ".gltf") == 0 ? 0 : -1;
+}
+
+static unsigned char *put_words(unsigned char *out, const uint32_t *words, int count)
+{
+    for (int i = 0; i < 4 * count; i++)
+        *out++ = (unsigned char)(words[i / 4] >> 8 * (i % 4));
+    return out;
+}
+
+static unsigned char *put_chunk(unsigned char *out, uint32_t type, const void *data, size_t count,
+                                unsigned char padding)
+{
+    size_t padded = (count + 3) / 4 * 4;
+    out = put_words(out, (const uint32_t[2]){(uint32_t)padded, type}, 2);
+    memcpy(out, data, count);
+    memset(out + count, padding, padded - count);
+    return out + padded;
+}
+
+Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t binary_count,
+                          unsigned char **out, size_t *out_count)
+{
+    size_t length = strlen(text);
+    size_t total = 12 + 8 + (length + 3) / 4 * 4;
+    if (binary_count)
+        total += 8 + (binary_count + 3) / 4 * 4;
+    if (total > UINT32_MAX)
+        return result_fail(RESULT_UNSUPPORTED, "a .glb of %zu bytes, expected below 4 GiB", total);
+    *out = memory_array(total, 1);
+    if (!*out)
+        return RESULT_NO_MEMORY;
+    *out_count = total;
+    unsigned char *end = put_words(*out, (const uint32_t[3]){GLB_MAGIC, 2, (uint32_t)total}, 3);
+    end = put_chunk(end, GLB_JSON, text, length, ' ');
+    if (binary_count)
+        put_chunk(end, GLB_BIN, binary, binary_count, 0);
+    return RESULT_OK;
+}
+
+char *gltf_file_data_uri(const unsigned char *bytes, size_t count)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char prefix[] = "data:application/octet-stream;base64,";
+    char *uri = memory_array(sizeof prefix + (count + 2) / 3 * 4, 1);
+    if (!uri)
+        return NULL;
+    memcpy(uri, prefix, sizeof prefix);
+    char *out = uri + sizeof prefix - 1;
+    for (size_t i = 0; i < count; i += 3) {
+        uint32_t group = (uint32_t)bytes[i] << 16;
+        group |= i + 1 < count ? (uint32_t)bytes[i + 1] << 8 : 0;
+        group |= i + 2 < count ? bytes[i + 2] : 0;
+        *out++ = digits[group >> 18];
+        *out++ = digits[group >> 12 & 63];
+        *out++ = i + 1 < count ? digits[group >> 6 & 63] : '=';
+        *out++ = i + 2 < count ? digits[group & 63] : '=';
+    }
+    return uri;
+}
+
+Result gltf_file_write(const char *path, const void *bytes, size_t count)
+{
+    size_t room = strlen(path) + 32;
+    char *temporary = memory_array(room, 1);
+    if (!temporary)
+        return RESULT_NO_MEMORY;
+    snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
+    FILE *file = fopen(temporary, "wb");
+    bool good = file && fwrite(bytes, 1, count, file) == count;
+    int error = errno;
+    if (file && fclose(file) && good) {
+        good = false;
+        error = errno;
+    }
+    if (good && rename(temporary, path)) {
+        good = false;
+        error = errno;
+    }
+    if (file && !good)
+        remove(temporary);
+    free(temporary);
+    return good ? RESULT_OK : result_fail(RESULT_IO, "%s: cannot write: %s", path, strerror(error));
+}

@@ -1,0 +1,28 @@
+/* Bytes of .gltf and .glb files, whole; what they mean is gltf_json's and gltf_write's business. */
+#ifndef PEEL_SCENE_GLTF_FILE_H
+#define PEEL_SCENE_GLTF_FILE_H
+
+#include "base/result.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* The whole of a regular file below 4 GiB. The caller frees *bytes, which has a 0 behind its end.
+ * IO when it cannot be read, BAD_INPUT when it is no regular file or too large. */
+Result gltf_file_read(const char *path, unsigned char **bytes, size_t *count);
+
+/* 1 for .glb, 0 for .gltf, −1 for anything else; case does not matter. */
+int gltf_file_kind(const char *path);
+
+/* The bytes of a .glb: JSON chunk and, unless empty, BIN chunk. The caller frees *out. */
+Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t binary_count,
+                          unsigned char **out, size_t *out_count);
+
+/* "data:application/octet-stream;base64," and the bytes (RFC 4648); the caller frees it. NULL
+ * without memory. */
+char *gltf_file_data_uri(const unsigned char *bytes, size_t count);
+
+/* Writes to a temporary name in the same folder, then renames: all or nothing. */
+Result gltf_file_write(const char *path, const void *bytes, size_t count);
+
+#endif

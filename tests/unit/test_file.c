@@ -1,0 +1,126 @@
+/* base/file: whole files or none. */
+#include "base/file.h"
+
+#include "scratch.h"
+#include "testing.h"
+
+#include <sys/stat.h>
+
+START_TEST(test_write_and_replace)
+{
+    char text[64];
+    const char *path = scratch_path("a.txt");
+    ck_assert_int_eq(file_write(path, "first", 5), RESULT_OK);
+    ck_assert_int_eq(file_write(path, "second", 6), RESULT_OK);
+    scratch_read(path, text, sizeof text);
+    ck_assert_str_eq(text, "second");
+    ck_assert_int_eq(scratch_entries(), 1);
+    struct stat status;
+    ck_assert_int_eq(stat(path, &status), 0);
+    mode_t mask = umask(0);
+    umask(mask);
+    ck_assert_int_eq(status.st_mode & 0777, 0666 & ~mask);
+}
+END_TEST
+
+START_TEST(test_abort_keeps_the_old_file)
+{
+    char text[64];
+    const char *path = scratch_path("a.txt");
+    ck_assert_int_eq(file_write(path, "old", 3), RESULT_OK);
+    FileWriter writer;
+    ck_assert_int_eq(file_writer_open(path, &writer), RESULT_OK);
+    ck_assert_int_eq(file_writer_print(&writer, "%d", 42), RESULT_OK);
+    ck_assert_int_eq(file_writer_close(&writer, false), RESULT_OK);
+    scratch_read(path, text, sizeof text);
+    ck_assert_str_eq(text, "old");
+    ck_assert_int_eq(scratch_entries(), 1);
+}
+END_TEST
+
+START_TEST(test_put_at)
+{
+    char text[64];
+    const char *path = scratch_path("a.txt");
+    FileWriter writer;
+    ck_assert_int_eq(file_writer_open(path, &writer), RESULT_OK);
+    ck_assert_int_eq(file_writer_put_at(&writer, "cd", 2, 2), RESULT_OK);
+    ck_assert_int_eq(file_writer_put_at(&writer, "ab", 2, 0), RESULT_OK);
+    ck_assert_int_eq(file_writer_close(&writer, true), RESULT_OK);
+    scratch_read(path, text, sizeof text);
+    ck_assert_str_eq(text, "abcd");
+}
+END_TEST
+
+START_TEST(test_bad_targets)
+{
+    FileWriter writer;
+    const char *paths[] = {scratch_path("no/such/directory/a.txt"), scratch_directory, ""};
+    for (int i = 0; i < 3; i++) {
+        ck_assert_int_eq(file_writer_open(paths[i], &writer), RESULT_IO);
+        ck_assert_msg(strstr(result_message(), paths[i]) != NULL, "no path in: %s",
+                      result_message());
+    }
+    ck_assert_int_eq(scratch_entries(), 0);
+}
+END_TEST
+
+START_TEST(test_full_device)
+{
+    ck_assert_int_eq(file_write("/dev/full", "x", 1), RESULT_IO);
+    ck_assert_str_eq(result_message(), "/dev/full: cannot write this file: No space left on "
+                                       "device");
+    struct stat status;
+    ck_assert_int_eq(stat("/dev/full", &status), 0);
+    ck_assert_msg(S_ISCHR(status.st_mode), "the device was replaced");
+    FileWriter writer;
+    ck_assert_int_eq(file_writer_open("/dev/full", &writer), RESULT_OK);
+    ck_assert_int_eq(file_writer_put_at(&writer, "x", 1, 0), RESULT_IO);
+    ck_assert_int_eq(file_writer_print(&writer, "more"), RESULT_IO);
+    ck_assert_int_eq(file_writer_close(&writer, true), RESULT_IO);
+}
+END_TEST
+
+START_TEST(test_symbolic_link_stays)
+{
+    char text[64];
+    const char *link_path = scratch_path("link"), *path = scratch_path("a.txt");
+    ck_assert_int_eq(file_write(path, "old", 3), RESULT_OK);
+    ck_assert_int_eq(symlink(path, link_path), 0);
+    ck_assert_int_eq(file_write(link_path, "new", 3), RESULT_OK);
+    struct stat status;
+    ck_assert_int_eq(lstat(link_path, &status), 0);
+    ck_assert_msg(S_ISLNK(status.st_mode), "the link was replaced");
+    scratch_read(path, text, sizeof text);
+    ck_assert_str_eq(text, "new");
+}
+END_TEST
+
+START_TEST(test_directories)
+{
+    const char *path = scratch_path("a//b/c/");
+    ck_assert_int_eq(file_make_directories(path), RESULT_OK);
+    ck_assert_int_eq(file_make_directories(path), RESULT_OK);
+    ck_assert_int_eq(file_write(scratch_path("a/b/c/file"), "x", 1), RESULT_OK);
+    ck_assert_int_eq(file_make_directories(scratch_path("a/b/c/file/d")), RESULT_IO);
+    ck_assert_int_eq(file_make_directories(scratch_path("a/b/c/file")), RESULT_IO);
+    ck_assert_int_eq(file_make_directories(""), RESULT_IO);
+    ck_assert_int_eq(file_make_directories("/proc/peel"), RESULT_IO);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("file");
+    TCase *tests = tcase_create("file");
+    tcase_add_checked_fixture(tests, scratch_make, scratch_remove);
+    tcase_add_test(tests, test_write_and_replace);
+    tcase_add_test(tests, test_abort_keeps_the_old_file);
+    tcase_add_test(tests, test_put_at);
+    tcase_add_test(tests, test_bad_targets);
+    tcase_add_test(tests, test_full_device);
+    tcase_add_test(tests, test_symbolic_link_stays);
+    tcase_add_test(tests, test_directories);
+    suite_add_tcase(suite, tests);
+    return testing_run(suite);
+}
