@@ -16,9 +16,8 @@ void viewport_transform(const Viewport *viewport, bool cut, Vertex *vertex)
 {
     float inverse_w = op_div(1.0f, vertex->clip[3]);
     for (int i = 0; i < 3; i++)
-        vertex->window[i] =
-            op_muladd(viewport->fused && !cut, op_mul(vertex->clip[i], inverse_w),
-                      viewport->scale[i], viewport->translate[i]);
+        vertex->window[i] = op_muladd(viewport->fused && !cut, op_mul(vertex->clip[i], inverse_w),
+                                      viewport->scale[i], viewport->translate[i]);
     vertex->window[3] = inverse_w;
     vertex->x_fixed8 = op_round_to_int(op_mul(op_sub(vertex->window[0], 0.5f), 256.0f));
     vertex->y_fixed8 = op_round_to_int(op_mul(op_sub(vertex->window[1], 0.5f), 256.0f));
@@ -105,8 +104,8 @@ static bool clip_plane(const Viewport *viewport, const Vertex *const triangle[3]
         if ((dp >= 0.0f) != (d >= 0.0f)) {
             ClipVertex *fresh = &out->vertices[out->count++];
             fresh->source = -1;
-            fresh->fresh = cross(viewport, resolve(triangle, previous), dp,
-                                 resolve(triangle, current), d);
+            fresh->fresh =
+                cross(viewport, resolve(triangle, previous), dp, resolve(triangle, current), d);
         }
         previous = current;
         dp = d;

@@ -13,7 +13,7 @@
 
 typedef struct Vertex {
     float clip[4];
-    float window[4]; /* x, y, z, 1/w */
+    float window[4];            /* x, y, z, 1/w */
     int32_t x_fixed8, y_fixed8; /* window x − 0.5 and y − 0.5, in 1/256 pixel */
     float position[3];          /* smooth varyings, view space */
     float normal[3];
@@ -39,8 +39,7 @@ typedef struct Geometry {
 } Geometry;
 
 /* fused: see op_muladd. The caller frees with geometry_free. NO_MEMORY on failure. */
-Result geometry_build(const Scene *scene, const View *view, bool fused, Pool *pool,
-                      Geometry *out);
+Result geometry_build(const Scene *scene, const View *view, bool fused, Pool *pool, Geometry *out);
 void geometry_free(Geometry *geometry);
 
 /* ---- clip.c ---- */
@@ -60,9 +59,13 @@ void viewport_transform(const Viewport *viewport, bool cut, Vertex *vertex);
 /* Bit i is set when the vertex is outside plane i: x ≤ w, x ≥ −w, y ≤ w, y ≥ −w, z ≥ −w, z ≤ w. */
 unsigned clip_outcode(const Vertex *vertex);
 
-enum { CLIP_VERTICES_MAX = 9, CLIP_PLANES = 6 };
+enum {
+    CLIP_VERTICES_MAX = 9,
+    CLIP_PLANES = 6
+};
 
-/* A vertex of the clipped polygon: an input vertex (source 0…2) or a new one (source < 0, fresh). */
+/* A vertex of the clipped polygon: an input vertex (source 0…2) or a new one (source < 0, fresh).
+ */
 typedef struct ClipVertex {
     int source;
     Vertex fresh;

@@ -8,7 +8,10 @@
 #include "ref/pipeline/buffers.h"
 #include "ref/pipeline/setup.h"
 
-enum { TILE = TRACE_TILE, TILE_PIXELS = TILE * TILE };
+enum {
+    TILE = TRACE_TILE,
+    TILE_PIXELS = TILE * TILE
+};
 #define PRIMITIVE_NONE UINT32_MAX
 
 /* Per tile, the indices of the primitives whose bounding box meets it, in draw order. */
@@ -38,10 +41,6 @@ uint64_t pass_bytes(const Pass *pass); /* of geometry and bins */
 PixelRect pass_tile_rect(const Pass *pass, uint32_t tile);
 
 void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out);
-
-/* The geometry pass's shader for one covered pixel: what it writes to its targets, unquantised. */
-void pass_fragment(const Pass *pass, const Setup *setup, const Primitive *primitive, int x, int y,
-                   Texel *out);
 
 /* Whether a transparent fragment at depth z (stored: key) is behind the stored opaque depth. */
 static inline bool pass_hidden(const Pass *pass, float z, uint32_t key, uint32_t opaque)
@@ -103,10 +102,9 @@ void pass_counts_report(const PassCounts *counts, Frame *frame);
 /* The transmittance towards the background (see frame/shading.h, resolve). */
 float pass_background_weight(const Pass *pass, const float accum[4], float opaque_alpha);
 
-/* ---- the two paths; frame's images are allocated, rows from the top ---- */
+/* ---- the definition path (the other is in tile.h); frame's images are allocated ---- */
 
 Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
 uint64_t peel_buffer_bytes(const Pass *pass); /* that peel_render will allocate */
-Result tile_render(Pass *pass, Frame *frame);
 
 #endif

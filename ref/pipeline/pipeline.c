@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "ref/pipeline/pass.h"
+#include "ref/pipeline/tile.h"
 
 #include <stdio.h>
 
@@ -27,8 +28,7 @@ static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trac
     Result result = pass_create(scene, desc, &pass);
     if (result != RESULT_OK)
         return result;
-    bool definition =
-        trace || desc->ref_path == REF_PATH_DEFINITION;
+    bool definition = trace || desc->ref_path == REF_PATH_DEFINITION;
     out->threads = pool_threads(pass.pool);
     out->fused = pass.fused;
     snprintf(out->version, sizeof out->version, "Peel %s", PEEL_VERSION);

@@ -62,19 +62,7 @@ static Edge make_edge(const Vertex *from, const Vertex *to)
     return (Edge){a, b, c};
 }
 
-Plane setup_plane(const Setup *setup, float p0, float p1, float p2)
-{
-    float d01 = op_sub(p0, p1), d20 = op_sub(p2, p0);
-    Plane plane;
-    plane.dx = op_sub(op_mul(d01, setup->dy20), op_mul(d20, setup->dy01));
-    plane.dy = op_sub(op_mul(d20, setup->dx01), op_mul(d01, setup->dx20));
-    plane.origin = op_sub(
-        p0, op_add(op_mul(plane.dx, setup->x_origin), op_mul(plane.dy, setup->y_origin)));
-    return plane;
-}
-
-void setup_triangle(const Vertex *const corners[3], bool flipped, int width, int height,
-                    Setup *out)
+void setup_triangle(const Vertex *const corners[3], bool flipped, int width, int height, Setup *out)
 {
     bool swap = snapped_area(corners) < 0;
     const Vertex *v0 = corners[swap ? 1 : 0], *v1 = corners[swap ? 0 : 1], *v2 = corners[2];

@@ -10,7 +10,11 @@
 #include "number/op.h"
 #include "ref/pipeline/geometry.h"
 
-typedef enum Facing { FACING_NONE = 0, FACING_FRONT, FACING_BACK } Facing;
+typedef enum Facing {
+    FACING_NONE = 0,
+    FACING_FRONT,
+    FACING_BACK
+} Facing;
 
 /* Pixels x0 … x1 and y0 … y1, both ends included, window coordinates (y up). */
 typedef struct PixelRect {
@@ -47,7 +51,16 @@ void setup_triangle(const Vertex *const corners[3], bool flipped, int width, int
                     Setup *out);
 
 /* The plane through the values p[i] at setup->corner[i]. */
-Plane setup_plane(const Setup *setup, float p0, float p1, float p2);
+static inline Plane setup_plane(const Setup *setup, float p0, float p1, float p2)
+{
+    float d01 = op_sub(p0, p1), d20 = op_sub(p2, p0);
+    Plane plane;
+    plane.dx = op_sub(op_mul(d01, setup->dy20), op_mul(d20, setup->dy01));
+    plane.dy = op_sub(op_mul(d20, setup->dx01), op_mul(d01, setup->dx20));
+    plane.origin =
+        op_sub(p0, op_add(op_mul(plane.dx, setup->x_origin), op_mul(plane.dy, setup->y_origin)));
+    return plane;
+}
 
 static inline float plane_at(bool fused, const Plane *plane, int x, int y)
 {

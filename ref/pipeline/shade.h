@@ -1,8 +1,10 @@
-/* The lighting pass of one pixel: frame/shading.h through number/op.h. */
+/* Lighting, resolve and display of one pixel: frame/shading.h, scalar. */
 #ifndef PEEL_REF_SHADE_H
 #define PEEL_REF_SHADE_H
 
+#include "frame/shading.h"
 #include "frame/view.h"
+#include "number/op.h"
 #include "ref/pipeline/buffers.h"
 
 /* From fetched G-buffer values to the premultiplied source colour; false where the alpha test
@@ -10,10 +12,24 @@
 bool shade_pixel(const View *view, const Texel *texel, float source[4]);
 
 /* Resolve: final colour over the background from an accumulated pixel whose transmittance to the
- * background is `transmittance`. Flushing mode. */
-void shade_final(const View *view, const float accum[4], float transmittance, float final[4]);
+ * background is `transmittance`. Flushing mode, as below. */
+static inline void shade_final(const View *view, const float accum[4], float transmittance,
+                               float final[4])
+{
+    for (int i = 0; i < 3; i++)
+        final[i] = op_canonical(op_add(accum[i], op_mul(view->background[i], transmittance)));
+    final[3] = op_canonical(op_sub(1.0f, transmittance));
+}
 
-/* The display transform of a final colour to RGBA8. fused: see op_pow. Flushing mode. */
-void shade_display(bool fused, const float final[4], uint8_t display[4]);
+/* The display transform of a final colour to RGBA8. fused: see op_pow. */
+static inline void shade_display(bool fused, const float final[4], uint8_t display[4])
+{
+    for (int i = 0; i < 3; i++) {
+        float c = op_max(final[i], 0.0f);
+        float mapped = op_div(c, op_add(c, 1.0f));
+        display[i] = unorm8_from_float(op_pow(fused, mapped, SHADING_DISPLAY_POWER));
+    }
+    display[3] = 255;
+}
 
 #endif

@@ -78,7 +78,8 @@ static Result sort_list(TileFragments *fragments, DepthFunc func)
     fragments->deepest = 0;
     for (int pixel = 0; pixel < FRAGMENTS_TILE_PIXELS; pixel++) {
         uint32_t count = first[pixel + 1] - first[pixel];
-        sort_pixel(&fragments->sorted[first[pixel]], count, func);
+        if (count > 1)
+            sort_pixel(&fragments->sorted[first[pixel]], count, func);
         fragments->deepest = count > fragments->deepest ? count : fragments->deepest;
     }
     return RESULT_OK;
@@ -111,7 +112,7 @@ static Result append(TileFragments *fragments, Fragment fragment)
 /* An opaque fragment against the nearest so far; the depth buffer was cleared to 1. */
 static void depth_test(Fragment *nearest, Fragment fragment, DepthFunc func)
 {
-    bool passes = nearest->triangle == (uint32_t)FRAGMENTS_NO_TRIANGLE
+    bool passes = nearest->triangle == FRAGMENTS_NO_TRIANGLE
                       ? func == DEPTH_LEQUAL || fragment.depth < 1.0
                       : in_front(&fragment, nearest, func);
     if (passes)
@@ -214,7 +215,7 @@ static void begin_tile(const Soup *soup, uint32_t tile, TileFragments *fragments
     fragments->count = 0;
     fragments->coverage_differs = 0;
     for (int pixel = 0; pixel < FRAGMENTS_TILE_PIXELS; pixel++) {
-        const Fragment none = {1.0, (uint32_t)FRAGMENTS_NO_TRIANGLE, (uint16_t)pixel, false, false};
+        const Fragment none = {1.0, FRAGMENTS_NO_TRIANGLE, (uint16_t)pixel, false, false};
         fragments->opaque[pixel] = fragments->exact_opaque[pixel] = none;
     }
 }

@@ -11,9 +11,7 @@
 enum {
     FRAGMENTS_TILE_PIXELS = TRACE_TILE * TRACE_TILE
 };
-enum {
-    FRAGMENTS_NO_TRIANGLE = -1
-}; /* as a uint32_t */
+#define FRAGMENTS_NO_TRIANGLE UINT32_MAX
 
 typedef struct Fragment {
     double depth;      /* window depth in [0, 1] */

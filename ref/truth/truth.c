@@ -81,7 +81,7 @@ static void composite(const Render *render, const TileFragments *tile, int pixel
         blend_fragment(render, fragment, alpha, x, y, rgba);
     }
     const Fragment *opaque = &tile->opaque[pixel];
-    if (opaque->triangle != (uint32_t)FRAGMENTS_NO_TRIANGLE && rgba[3] > 0.0)
+    if (opaque->triangle != FRAGMENTS_NO_TRIANGLE && rgba[3] > 0.0)
         blend_fragment(render, opaque, 1.0, x, y, rgba);
     for (int i = 0; i < 3; i++)
         rgba[i] += rgba[3] * render->view->background[i];
@@ -132,8 +132,7 @@ static Result put_layer(Render *render, const TileFragments *tile, const char *n
 
 static uint32_t traced_id(const Soup *soup, uint32_t triangle)
 {
-    return triangle == (uint32_t)FRAGMENTS_NO_TRIANGLE ? UINT32_MAX
-                                                       : soup_primitive(soup, triangle);
+    return triangle == FRAGMENTS_NO_TRIANGLE ? UINT32_MAX : soup_primitive(soup, triangle);
 }
 
 static Result trace_tile(Render *render, WorkerState *worker)

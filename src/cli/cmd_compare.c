@@ -17,7 +17,11 @@ typedef struct CompareCommand {
     char *line; /* the command, to be shown in the report */
 } CompareCommand;
 
-enum { KEY_JSON = 0x200, KEY_REPORT, KEY_TOLERANCE };
+enum {
+    KEY_JSON = 0x200,
+    KEY_REPORT,
+    KEY_TOLERANCE
+};
 
 static const struct argp_option command_options[] = {
     {"json", KEY_JSON, "FILE", 0, "Write the figures as JSON", 0},
@@ -53,11 +57,15 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 
 static const struct argp_child children[] = {{&options_render_argp, 0, NULL, 1}, {0}};
 static const struct argp command_argp = {
-    command_options, parse, "SCENE",
+    command_options,
+    parse,
+    "SCENE",
     "Renders SCENE (.gltf, .glb, or the name of a built-in scene) with ref, gl and truth and "
     "compares every buffer.\vExit code 0 when ref and gl agree bit for bit and ref agrees with "
     "truth within the tolerance, else 2.",
-    children, NULL, NULL};
+    children,
+    NULL,
+    NULL};
 
 /* The command as a shell would take it again. */
 static char *command_line(int argc, char **argv)

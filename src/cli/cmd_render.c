@@ -16,7 +16,10 @@ typedef struct RenderCommand {
     const char *output, *trace;
 } RenderCommand;
 
-enum { KEY_WITH = 0x200, KEY_TRACE };
+enum {
+    KEY_WITH = 0x200,
+    KEY_TRACE
+};
 
 static const struct argp_option command_options[] = {
     {"with", KEY_WITH, "NAME", 0, "Renderer: ref (default), gl or truth", 0},
@@ -55,8 +58,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         state->child_inputs[0] = &command->render;
         return 0;
     case ARGP_KEY_SUCCESS:
-        return command->output || command->trace ? 0
-                                                 : options_error("render: expected -o FILE");
+        return command->output || command->trace ? 0 : options_error("render: expected -o FILE");
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -64,9 +66,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 
 static const struct argp_child children[] = {{&options_render_argp, 0, NULL, 1}, {0}};
 static const struct argp command_argp = {
-    command_options, parse, "SCENE -o FILE",
-    "Renders SCENE (.gltf, .glb, or the name of a built-in scene) with one renderer.", children,
-    NULL, NULL};
+    command_options,
+    parse,
+    "SCENE -o FILE",
+    "Renders SCENE (.gltf, .glb, or the name of a built-in scene) with one renderer.",
+    children,
+    NULL,
+    NULL};
 
 static Result write_parts(const TraceStore *store, ExrWriter *writer)
 {
@@ -108,14 +114,13 @@ static Result render(const RenderCommand *command, const Scene *scene, TraceStor
                      Frame *out)
 {
     const RenderDesc *desc = &command->render.desc;
-    Result result = bind_renderers[command->renderer](scene, desc,
-                                                      store ? store_sink(store) : NULL, out);
+    Result result =
+        bind_renderers[command->renderer](scene, desc, store ? store_sink(store) : NULL, out);
     if (result != RESULT_OK)
         return result;
     if (command->output)
-        result = has_extension(command->output, ".png")
-                     ? png_write(&out->display, command->output)
-                     : exr_write(&out->final, command->output);
+        result = has_extension(command->output, ".png") ? png_write(&out->display, command->output)
+                                                        : exr_write(&out->final, command->output);
     if (result == RESULT_OK && store)
         result = write_trace(store, command->trace);
     if (result != RESULT_OK)

@@ -40,9 +40,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp scenes_argp = {
-    scenes_options, parse, "[NAME -o FILE]",
+    scenes_options,
+    parse,
+    "[NAME -o FILE]",
     "Lists the built-in scenes, or writes one as glTF 2.0. The files in data/scenes are made so.",
-    NULL, NULL, NULL};
+    NULL,
+    NULL,
+    NULL};
 
 static int list(void)
 {

@@ -20,15 +20,13 @@ static const Command commands[] = {
 
 static void print_help(FILE *out)
 {
-    fprintf(out,
-            "Usage: peel COMMAND [OPTION...] [ARGUMENT...]\n"
-            "The reference for order-independent transparency by depth peeling.\n\n");
+    fprintf(out, "Usage: peel COMMAND [OPTION...] [ARGUMENT...]\n"
+                 "The reference for order-independent transparency by depth peeling.\n\n");
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
         fprintf(out, "  peel %-9s %s\n", commands[i].name, commands[i].summary);
-    fprintf(out,
-            "\n'peel COMMAND --help' shows a command's options.\n\n"
-            "Exit codes: 0 agree or done, 2 differ beyond the threshold, 3 sizes differ,\n"
-            "4 bad input, usage or environment (one line on stderr says what).\n");
+    fprintf(out, "\n'peel COMMAND --help' shows a command's options.\n\n"
+                 "Exit codes: 0 agree or done, 2 differ beyond the threshold, 3 sizes differ,\n"
+                 "4 bad input, usage or environment (one line on stderr says what).\n");
 }
 
 int main(int argc, char **argv)

@@ -116,8 +116,7 @@ static error_t parse_count(const char *name, const char *text, int low, int high
 {
     long long value;
     if (!options_integer(text, low, high, &value))
-        return options_error("%s %s: expected a whole number from %d to %d", name, text, low,
-                             high);
+        return options_error("%s %s: expected a whole number from %d to %d", name, text, low, high);
     *out = (int)value;
     return 0;
 }
@@ -142,6 +141,7 @@ enum {
     KEY_PASSES,
     KEY_PROFILE,
     KEY_FMA,
+    KEY_SIMD,
     KEY_THREADS,
     KEY_MEMORY,
 };
@@ -153,8 +153,7 @@ static const struct argp_option render_options[] = {
     {"lights", KEY_LIGHTS, "N", 0, "The scene's first N lights (default all)", 1},
     {"time", KEY_TIME, "SECONDS", 0, "Turns the lights (default 0)", 1},
     {"opacity", KEY_OPACITY, "A", 0, "Opacity 0 to 1 of every material; below 1 all are peeled", 1},
-    {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)",
-     1},
+    {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)", 1},
     {"method", KEY_METHOD, "NAME", 0, "Transparency method (default peel)", 1},
     {"passes", KEY_PASSES, "N|auto", 0,
      "At most N peels; auto (default) until a peel yields no fragment", 1},
@@ -162,6 +161,8 @@ static const struct argp_option render_options[] = {
      "default, or seed: the number formats and choices of the original program", 1},
     {"fma", KEY_FMA, "on|off", 0,
      "Fused multiply-add in fixed-function arithmetic (default as the GL driver does)", 1},
+    {"simd", KEY_SIMD, "NAME", 0,
+     "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
     {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
     {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
     {0},
@@ -193,6 +194,16 @@ static error_t parse_fma(const char *text, RenderOptions *options)
     if (options->fma == FMA_OFF && strcmp(text, "off") != 0)
         return options_error("--fma %s: expected on or off", text);
     return 0;
+}
+
+static error_t parse_simd(const char *text, RenderDesc *desc)
+{
+    for (SimdChoice simd = SIMD_AUTO; simd < SIMD_COUNT; simd++)
+        if (strcmp(text, simd_name(simd)) == 0) {
+            desc->simd = simd;
+            return 0;
+        }
+    return options_error("--simd %s: expected auto, scalar, sse2, avx2 or avx512", text);
 }
 
 static error_t parse_method(const char *text, RenderDesc *desc)
@@ -239,6 +250,8 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         return parse_profile(argument, options);
     case KEY_FMA:
         return parse_fma(argument, options);
+    case KEY_SIMD:
+        return parse_simd(argument, desc);
     case KEY_THREADS:
         return parse_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:

@@ -8,9 +8,17 @@
 #include <argp.h>
 
 /* The documented exit codes of all commands. */
-enum { EXIT_AGREE = 0, EXIT_DIFFER = 2, EXIT_BAD_INPUT = 4 };
+enum {
+    EXIT_AGREE = 0,
+    EXIT_DIFFER = 2,
+    EXIT_BAD_INPUT = 4
+};
 
-typedef enum FmaChoice { FMA_AUTO = 0, FMA_ON, FMA_OFF } FmaChoice;
+typedef enum FmaChoice {
+    FMA_AUTO = 0,
+    FMA_ON,
+    FMA_OFF
+} FmaChoice;
 
 typedef struct RenderOptions {
     const char *scene_path; /* the argument SCENE; NULL until it is parsed */

@@ -14,8 +14,8 @@ static bool is_diagnostic(const char *name)
 
 static Result add(Against *against, const char *name, BufferMetrics **out)
 {
-    Result result = memory_grow((void **)&against->buffers, &against->capacity,
-                                against->count + 1, sizeof *against->buffers);
+    Result result = memory_grow((void **)&against->buffers, &against->capacity, against->count + 1,
+                                sizeof *against->buffers);
     if (result != RESULT_OK)
         return result;
     *out = &against->buffers[against->count++];
@@ -53,8 +53,8 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
     }
     against->seen[index] = true;
     size_t row_bytes = (size_t)buffer->width * format_pixel_bytes(buffer->format);
-    result = memory_grow((void **)&against->band, &against->band_capacity,
-                         row_bytes * TRACE_TILE, 1);
+    result =
+        memory_grow((void **)&against->band, &against->band_capacity, row_bytes * TRACE_TILE, 1);
     for (int y = 0; result == RESULT_OK && y < buffer->height; y += TRACE_TILE) {
         int rows = buffer->height - y < TRACE_TILE ? buffer->height - y : TRACE_TILE;
         result = store_read(against->reference, index, buffer->x, buffer->y + y, buffer->width,

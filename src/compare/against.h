@@ -11,7 +11,7 @@ typedef struct Against {
     const TraceStore *reference;
     BufferMetrics *buffers; /* in order of arrival; then what only the reference has */
     size_t count, capacity;
-    bool *seen;             /* per buffer of the reference */
+    bool *seen; /* per buffer of the reference */
     unsigned char *band;
     size_t band_capacity;
 } Against;

@@ -35,8 +35,8 @@ static void fold_value(BufferMetrics *metrics, PixelFormat format, const unsigne
                        const unsigned char *b, int x, int y, int channel)
 {
     const FormatInfo *info = format_info(format);
-    uint32_t ulp = channel_ulp(info->kind, channel_bits(info, a, channel),
-                               channel_bits(info, b, channel));
+    uint32_t ulp =
+        channel_ulp(info->kind, channel_bits(info, a, channel), channel_bits(info, b, channel));
     if (ulp == 0)
         return;
     metrics->differing++;
@@ -54,9 +54,8 @@ static void fold_value(BufferMetrics *metrics, PixelFormat format, const unsigne
     }
 }
 
-void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, int width,
-                    int height, const void *a, size_t a_row_bytes, const void *b,
-                    size_t b_row_bytes)
+void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, int width, int height,
+                    const void *a, size_t a_row_bytes, const void *b, size_t b_row_bytes)
 {
     int channels = format_info(format)->channels;
     size_t pixel_bytes = format_pixel_bytes(format), row_bytes = (size_t)width * pixel_bytes;

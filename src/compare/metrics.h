@@ -15,7 +15,7 @@ typedef struct BufferMetrics {
     uint32_t max_ulp;   /* greatest distance in representable values */
     double max_abs;     /* greatest absolute difference; unorm scaled to [0, 1] */
     bool has_first;
-    int first[3];       /* x, y, channel of the first differing value, from the top left */
+    int first[3]; /* x, y, channel of the first differing value, from the top left */
 } BufferMetrics;
 
 /* Difference of two final images over R, G, B and A. */
@@ -24,7 +24,7 @@ typedef struct FinalMetrics {
     uint64_t differing; /* pixels with any differing bit */
     uint64_t nonfinite; /* pixels where a or b is NaN or infinite: left out of the averages */
     double max_abs, mean_abs, rmse; /* over channel values */
-    double psnr;        /* dB for peak 1; INFINITY when equal */
+    double psnr;                    /* dB for peak 1; INFINITY when equal */
     uint32_t max_ulp;
 } FinalMetrics;
 
@@ -39,9 +39,8 @@ typedef struct UnaffectedMetrics {
 /* Folds the differences of a rectangle of two buffers of one format into metrics (zeroed or from
  * earlier rectangles): rows of a_row_bytes and b_row_bytes, the rectangle's corner at (x, y) of
  * the buffer. Rectangles must come in reading order for `first` to be the first. */
-void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, int width,
-                    int height, const void *a, size_t a_row_bytes, const void *b,
-                    size_t b_row_bytes);
+void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, int width, int height,
+                    const void *a, size_t a_row_bytes, const void *b, size_t b_row_bytes);
 
 /* a and b: FORMAT_RGBA32F of one size. */
 void metrics_final(const Image *a, const Image *b, FinalMetrics *out);

@@ -8,10 +8,19 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { PIXEL_BYTES_MAX = 16 };
-enum { TILE_BYTES_MAX = TRACE_TILE * TRACE_TILE * PIXEL_BYTES_MAX };
+enum {
+    PIXEL_BYTES_MAX = 16
+};
+enum {
+    TILE_BYTES_MAX = TRACE_TILE * TRACE_TILE * PIXEL_BYTES_MAX
+};
 
-typedef enum TileKind { TILE_ABSENT = 0, TILE_CONSTANT, TILE_MEMORY, TILE_FILE } TileKind;
+typedef enum TileKind {
+    TILE_ABSENT = 0,
+    TILE_CONSTANT,
+    TILE_MEMORY,
+    TILE_FILE
+} TileKind;
 
 typedef struct TileRef {
     TileKind kind;
@@ -112,8 +121,7 @@ static Result load_tile(const TraceStore *store, const TileRef *ref, size_t pixe
         break;
     case TILE_FILE:
         if (pread(fileno(store->file), out, bytes, (off_t)ref->offset) != (ssize_t)bytes)
-            return result_fail(RESULT_IO, "temporary trace file: read failed: %s",
-                               strerror(errno));
+            return result_fail(RESULT_IO, "temporary trace file: read failed: %s", strerror(errno));
         break;
     }
     return RESULT_OK;
@@ -128,8 +136,7 @@ static Result spill(TraceStore *store, size_t bytes, TileRef *ref)
 {
     if (!store->file && !(store->file = tmpfile()))
         return result_fail(RESULT_IO, "temporary trace file: %s", strerror(errno));
-    if (pwrite(fileno(store->file), store->tile, bytes, (off_t)store->file_bytes) !=
-        (ssize_t)bytes)
+    if (pwrite(fileno(store->file), store->tile, bytes, (off_t)store->file_bytes) != (ssize_t)bytes)
         return result_fail(RESULT_IO, "temporary trace file: write failed: %s", strerror(errno));
     ref->kind = TILE_FILE;
     ref->offset = store->file_bytes;
@@ -209,8 +216,8 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
                           (size_t)((buffer->x + x) / TRACE_TILE);
             const TileRef *previous =
                 entry->previous >= 0 ? &store->entries[entry->previous].tiles[tile] : NULL;
-            Result result = put_tile(store, previous, pixel_bytes,
-                                     (size_t)width * (size_t)height, &entry->tiles[tile]);
+            Result result = put_tile(store, previous, pixel_bytes, (size_t)width * (size_t)height,
+                                     &entry->tiles[tile]);
             if (result != RESULT_OK)
                 return result;
         }
@@ -281,8 +288,8 @@ Result store_read(const TraceStore *store, int index, int x, int y, int width, i
             memset(tile, buffer->format == FORMAT_R32UI ? 0xff : 0, sizeof tile);
             const TileRef *ref = &entry->tiles[(size_t)(ty / TRACE_TILE) * (size_t)entry->columns +
                                                (size_t)(tx / TRACE_TILE)];
-            Result result = load_tile(store, ref, pixel_bytes,
-                                      (size_t)tile_width * (size_t)tile_height, tile);
+            Result result =
+                load_tile(store, ref, pixel_bytes, (size_t)tile_width * (size_t)tile_height, tile);
             if (result != RESULT_OK)
                 return result;
             int x0 = tx > x ? tx : x, x1 = minimum(tx + tile_width, x + width);

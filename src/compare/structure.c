@@ -11,14 +11,16 @@
 /* One side's ids of one tile: layer k of pixel p is ids[k·TRACE_TILE² + p]. */
 typedef struct Layers {
     const TraceStore *store;
-    int opaque;  /* buffer index or −1 */
-    int *peel;   /* buffer indices */
+    int opaque; /* buffer index or −1 */
+    int *peel;  /* buffer indices */
     int count;
     uint32_t *opaque_ids;
     uint32_t *ids;
 } Layers;
 
-enum { TILE_PIXELS = TRACE_TILE * TRACE_TILE };
+enum {
+    TILE_PIXELS = TRACE_TILE * TRACE_TILE
+};
 
 static void layers_free(Layers *layers)
 {
@@ -54,8 +56,8 @@ static Result layers_load(Layers *layers, int x, int y, int width, int height)
     Result result = RESULT_OK;
     memset(layers->opaque_ids, 0xff, TILE_PIXELS * sizeof(uint32_t));
     if (layers->opaque >= 0)
-        result = store_read(layers->store, layers->opaque, x, y, width, height,
-                            layers->opaque_ids, row);
+        result =
+            store_read(layers->store, layers->opaque, x, y, width, height, layers->opaque_ids, row);
     for (int k = 0; result == RESULT_OK && k < layers->count; k++)
         result = store_read(layers->store, layers->peel[k], x, y, width, height,
                             layers->ids + (size_t)k * TILE_PIXELS, row);

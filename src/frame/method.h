@@ -12,7 +12,7 @@ typedef struct MethodInfo {
     bool exact; /* converges to the sorted result with enough passes, ties apart */
 } MethodInfo;
 
-const MethodInfo *method_info(MethodId id);        /* static */
-const MethodInfo *method_find(const char *name);   /* NULL when there is none */
+const MethodInfo *method_info(MethodId id);      /* static */
+const MethodInfo *method_find(const char *name); /* NULL when there is none */
 
 #endif

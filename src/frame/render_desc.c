@@ -11,3 +11,9 @@ void render_desc_seed_profile(RenderDesc *desc)
     desc->normals = NORMALS_KEPT;
     desc->opaque_blend = OPAQUE_BLEND_SEED;
 }
+
+const char *simd_name(SimdChoice simd)
+{
+    static const char *const names[SIMD_COUNT] = {"auto", "scalar", "sse2", "avx2", "avx512"};
+    return names[simd];
+}

@@ -8,22 +8,64 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-typedef enum MethodId { METHOD_PEEL = 0, METHOD_COUNT } MethodId;
-typedef enum GBufferFormat { GBUFFER_FULL = 0, GBUFFER_SEED } GBufferFormat;
-typedef enum DepthFunc { DEPTH_LESS = 0, DEPTH_LEQUAL } DepthFunc;
+typedef enum MethodId {
+    METHOD_PEEL = 0,
+    METHOD_COUNT
+} MethodId;
+typedef enum GBufferFormat {
+    GBUFFER_FULL = 0,
+    GBUFFER_SEED
+} GBufferFormat;
+typedef enum DepthFunc {
+    DEPTH_LESS = 0,
+    DEPTH_LEQUAL
+} DepthFunc;
 /* stored: a fragment's depth is converted to the stored format before it is compared with a
  * previous layer; raw: gl_FragCoord.z is compared with the fetched value as it is. */
-typedef enum PeelTest { PEEL_TEST_STORED = 0, PEEL_TEST_RAW } PeelTest;
+typedef enum PeelTest {
+    PEEL_TEST_STORED = 0,
+    PEEL_TEST_RAW
+} PeelTest;
 /* gltf: back faces of single-sided materials are culled; seed: of opaque materials only. */
-typedef enum CullMode { CULL_GLTF = 0, CULL_SEED, CULL_NONE } CullMode;
-typedef enum NormalMode { NORMALS_FACED = 0, NORMALS_KEPT } NormalMode;
+typedef enum CullMode {
+    CULL_GLTF = 0,
+    CULL_SEED,
+    CULL_NONE
+} CullMode;
+typedef enum NormalMode {
+    NORMALS_FACED = 0,
+    NORMALS_KEPT
+} NormalMode;
 /* under: destination alpha becomes 0 behind opaque; seed: glBlendFunc(DST_ALPHA, ONE) for all
  * four channels, so destination alpha becomes 2T and means nothing. RGB is the same. */
-typedef enum OpaqueBlend { OPAQUE_BLEND_UNDER = 0, OPAQUE_BLEND_SEED } OpaqueBlend;
-typedef enum RefPath { REF_PATH_AUTO = 0, REF_PATH_DEFINITION, REF_PATH_TILE } RefPath;
+typedef enum OpaqueBlend {
+    OPAQUE_BLEND_UNDER = 0,
+    OPAQUE_BLEND_SEED
+} OpaqueBlend;
+typedef enum RefPath {
+    REF_PATH_AUTO = 0,
+    REF_PATH_DEFINITION,
+    REF_PATH_TILE
+} RefPath;
 
-enum { SIZE_MAX_PIXELS = 16384 }; /* per side */
-enum { PASSES_MAX = 4096 };
+/* Which instruction set the fast path of ref uses; the bits are the same. */
+typedef enum SimdChoice {
+    SIMD_AUTO = 0,
+    SIMD_SCALAR,
+    SIMD_SSE2,
+    SIMD_AVX2,
+    SIMD_AVX512,
+    SIMD_COUNT
+} SimdChoice;
+
+const char *simd_name(SimdChoice simd); /* "auto", "scalar", …; static */
+
+enum {
+    SIZE_MAX_PIXELS = 16384
+}; /* per side */
+enum {
+    PASSES_MAX = 4096
+};
 #define RENDER_MEMORY_DEFAULT ((size_t)4 << 30) /* bytes */
 
 typedef struct RenderDesc {
@@ -32,7 +74,7 @@ typedef struct RenderDesc {
     double time;       /* seconds; turns the lights */
     int lights;        /* first N of the scene's; 0 all, negative none */
     MethodId method;
-    int passes; /* at most N peels; 0 until a peel yields no fragment */
+    int passes;        /* at most N peels; 0 until a peel yields no fragment */
     PixelFormat depth; /* FORMAT_D32F or FORMAT_D24; FORMAT_RGBA32F (zero) means the default D32F */
     PixelFormat accum; /* FORMAT_RGBA32F or FORMAT_RGBA16 */
     GBufferFormat gbuffer;
@@ -41,8 +83,9 @@ typedef struct RenderDesc {
     CullMode cull;
     NormalMode normals;
     OpaqueBlend opaque_blend;
-    bool unfused;  /* model a driver without fused multiply-add */
+    bool unfused; /* model a driver without fused multiply-add */
     RefPath ref_path;
+    SimdChoice simd;
     int threads;       /* 0: one per processor */
     size_t max_memory; /* bytes a renderer may allocate for buffers; 0: 4 GiB */
 } RenderDesc;

@@ -15,7 +15,9 @@
 #include <stddef.h>
 
 /* Rectangles start at multiples of TRACE_TILE and end there or at the image's edge. */
-enum { TRACE_TILE = 64 };
+enum {
+    TRACE_TILE = 64
+};
 
 typedef struct TraceBuffer {
     const char *name;

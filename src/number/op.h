@@ -290,10 +290,10 @@ static inline float op_log2(bool fused, float x)
     return op_muladd(fused, y, op_muladd(fused, odd, z, even), exponent);
 }
 
-/* pow(x, y) for x ≥ 0; 0 for x = 0 whatever y is. */
+/* pow(x, y); 0 where x is 0 or NaN, whatever y is. */
 static inline float op_pow(bool fused, float x, float y)
 {
-    return op_flush(x) == 0.0f ? 0.0f : op_exp2(fused, op_mul(op_log2(fused, x), y));
+    return x != x || op_flush(x) == 0.0f ? 0.0f : op_exp2(fused, op_mul(op_log2(fused, x), y));
 }
 
 /* The one NaN that we store, whatever bits the processor made. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 
-/* Equal steps along the scale, in linear light; relative luminance rises from 0.03 to 0.93, so
+/* At equal steps along the scale, in linear light; relative luminance rises from 0.03 to 0.93, so
  * the order survives a print in grey and any kind of colour blindness. */
 static const double stops[][3] = {
     {0.04, 0.015, 0.20}, {0.10, 0.03, 0.45}, {0.45, 0.05, 0.50},
@@ -20,14 +20,17 @@ static uint8_t encode(double linear)
     return (uint8_t)lround(255 * value);
 }
 
-/* t in [0, 1] along the scale. */
+/* t in [0, 1] along the scale. Cube roots of linear light are near to perceived lightness, so
+ * steps between the stops look even. */
 static void color_at(double t, uint8_t rgba[4])
 {
     double place = t * (STOPS - 1);
     int low = place >= STOPS - 1 ? STOPS - 2 : (int)place;
     double part = place - low;
-    for (int c = 0; c < 3; c++)
-        rgba[c] = encode(stops[low][c] + part * (stops[low + 1][c] - stops[low][c]));
+    for (int c = 0; c < 3; c++) {
+        double from = cbrt(stops[low][c]), to = cbrt(stops[low + 1][c]);
+        rgba[c] = encode(pow(from + part * (to - from), 3));
+    }
     rgba[3] = 255;
 }
 
@@ -57,20 +60,41 @@ static double pixel_difference(const float a[4], const float b[4])
     return greatest;
 }
 
-Result heatmap_image(const Image *a, const Image *b, Image *out)
+/* The greatest difference in a block; NaN beats all. */
+static double block_difference(const Image *a, const Image *b, int left, int top, int block)
+{
+    int right = left + block < a->width ? left + block : a->width;
+    int bottom = top + block < a->height ? top + block : a->height;
+    double greatest = 0;
+    for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++) {
+            double difference = pixel_difference(image_pixel(a, x, y), image_pixel(b, x, y));
+            if (isnan(difference))
+                return difference;
+            greatest = fmax(greatest, difference);
+        }
+    return greatest;
+}
+
+Result heatmap_reduced(const Image *a, const Image *b, int block, Image *out)
 {
     *out = (Image){0};
     if (a->format != FORMAT_RGBA32F || b->format != FORMAT_RGBA32F || a->width != b->width ||
-        a->height != b->height)
+        a->height != b->height || block < 1)
         return result_fail(RESULT_INTERNAL, "heat map: expected two rgba32f images of one size");
-    Result result = image_create(a->width, a->height, FORMAT_RGBA8, out);
+    Result result = image_create((a->width + block - 1) / block, (a->height + block - 1) / block,
+                                 FORMAT_RGBA8, out);
     if (result != RESULT_OK)
         return result;
-    for (int y = 0; y < a->height; y++)
-        for (int x = 0; x < a->width; x++)
-            color_of(pixel_difference(image_pixel(a, x, y), image_pixel(b, x, y)),
-                     image_pixel(out, x, y));
+    for (int y = 0; y < out->height; y++)
+        for (int x = 0; x < out->width; x++)
+            color_of(block_difference(a, b, x * block, y * block, block), image_pixel(out, x, y));
     return RESULT_OK;
+}
+
+Result heatmap_image(const Image *a, const Image *b, Image *out)
+{
+    return heatmap_reduced(a, b, 1, out);
 }
 
 Result heatmap_scale(int width, int height, Image *out)

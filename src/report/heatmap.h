@@ -13,6 +13,10 @@
 /* a and b: FORMAT_RGBA32F of one size; *out FORMAT_RGBA8, the caller frees. */
 Result heatmap_image(const Image *a, const Image *b, Image *out);
 
+/* The same, smaller: each pixel of *out shows the greatest difference of block·block pixels (fewer
+ * at the right and bottom edges), so that a single differing pixel stays visible. */
+Result heatmap_reduced(const Image *a, const Image *b, int block, Image *out);
+
 /* The legend's colours, left (low) to right (high): *out FORMAT_RGBA8, the caller frees. */
 Result heatmap_scale(int width, int height, Image *out);
 

@@ -16,6 +16,23 @@ extern const char report_style_css[];
 
 /* ---- head and verdict ------------------------------------------------------------------------ */
 
+/* The settings that one looks for first. */
+static void put_summary(FileWriter *page, const Threeway *report)
+{
+    static const char *const names[] = {"Size", "Method", "Peels", "Lights", "Profile"};
+    SummarySetting settings[SUMMARY_SETTINGS];
+    int count = summary_settings(report, settings);
+    const char *separator = "";
+    for (size_t n = 0; n < sizeof names / sizeof names[0]; n++)
+        for (int i = 0; i < count; i++) {
+            if (strcmp(settings[i].name, names[n]) != 0)
+                continue;
+            file_writer_print(page, "%s%s&nbsp;", separator, settings[i].name);
+            html_text(page, settings[i].value);
+            separator = " &middot; ";
+        }
+}
+
 static void put_head(FileWriter *page, const Threeway *report)
 {
     file_writer_print(page, "<!doctype html>\n<html lang=\"en\">\n<head>\n"
@@ -29,6 +46,8 @@ static void put_head(FileWriter *page, const Threeway *report)
     html_text(page, report->scene_name);
     file_writer_print(page, "</h1>\n<p class=\"path\">");
     html_text(page, report->scene_path);
+    file_writer_print(page, "</p>\n<p class=\"path\">");
+    put_summary(page, report);
     file_writer_print(page, "</p>\n</header>\n<main>\n");
 }
 
@@ -56,13 +75,20 @@ static void put_verdict(FileWriter *page, const Threeway *report)
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
-/* A linked picture; alt and what follows are the caller's, the figure stays open. */
-static void put_picture(FileWriter *page, const char *name, int width, int height, bool lazy)
+typedef struct Picture {
+    const char *shown, *linked; /* file names; linked NULL: the same */
+    int width, height;
+    bool lazy;
+} Picture;
+
+/* Opens a figure with a linked picture; the caller goes on with the text for alt. */
+static void put_picture(FileWriter *page, const Picture *picture)
 {
     file_writer_print(page,
                       "<figure>\n<a href=\"%s\"><img src=\"%s\" width=\"%d\" height=\"%d\"%s "
                       "alt=\"",
-                      name, name, width, height, lazy ? " loading=\"lazy\"" : "");
+                      picture->linked ? picture->linked : picture->shown, picture->shown,
+                      picture->width, picture->height, picture->lazy ? " loading=\"lazy\"" : "");
 }
 
 static void put_finals(FileWriter *page, const Threeway *report)
@@ -77,8 +103,9 @@ static void put_finals(FileWriter *page, const Threeway *report)
                             "<h2 id=\"images\">Final images</h2>\n<div class=\"three\">\n");
     for (int i = 0; i < RENDERER_COUNT; i++) {
         const Frame *frame = &report->frames[i];
-        put_picture(page, pictures_final(i, name), frame->display.width, frame->display.height,
-                    false);
+        put_picture(page, &(Picture){.shown = pictures_final(i, name),
+                                     .width = frame->display.width,
+                                     .height = frame->display.height});
         file_writer_print(page, "Final image of %s: ", threeway_renderer_name(i));
         html_text(page, report->scene_name);
         file_writer_print(page,
@@ -100,10 +127,10 @@ static void put_scale(FileWriter *page)
                       low, high);
     for (int power = low; power <= high; power++)
         if (power == 0)
-            file_writer_print(page, "<li>1</li>\n");
+            file_writer_print(page, "<li><span>1</span></li>\n");
         else
-            file_writer_print(page, "<li>10<sup>%s%d</sup></li>\n", power < 0 ? "&minus;" : "",
-                              abs(power));
+            file_writer_print(page, "<li><span>10<sup>%s%d</sup></span></li>\n",
+                              power < 0 ? "&minus;" : "", abs(power));
     file_writer_print(page,
                       "</ol>\n<p>Greatest absolute difference of a pixel's channels, linear "
                       "values, logarithmic scale. <span class=\"key equal\"></span> black: equal. "
@@ -113,11 +140,19 @@ static void put_scale(FileWriter *page)
 
 static void put_differences(FileWriter *page, const Threeway *report)
 {
-    char name[PICTURES_NAME], differing[SUMMARY_NUMBER], greatest[SUMMARY_NUMBER];
+    char name[PICTURES_NAME], small[PICTURES_NAME];
+    char differing[SUMMARY_NUMBER], greatest[SUMMARY_NUMBER];
+    const Image *image = &report->frames[RENDERER_REF].final;
+    int block = pictures_block(report);
     char rmse[SUMMARY_NUMBER];
     file_writer_print(page, "<section aria-labelledby=\"differences\">\n"
                             "<h2 id=\"differences\">Where they differ</h2>\n");
     put_scale(page);
+    if (block > 1)
+        file_writer_print(page,
+                          "<p>Each point shown is the greatest difference of %d &times; %d pixels; "
+                          "the pictures link to the full size.</p>\n",
+                          block, block);
     file_writer_print(page, "<div class=\"three\">\n");
     for (int i = 0; i < 3; i++) {
         const PairReport *pair = &report->pairs[i];
@@ -125,8 +160,10 @@ static void put_differences(FileWriter *page, const Threeway *report)
         const FinalMetrics *final = &pair->final;
         summary_count(final->differing, differing);
         summary_real(final->max_abs, greatest);
-        put_picture(page, pictures_difference(pair, name), report->frames[pair->a].final.width,
-                    report->frames[pair->a].final.height, false);
+        put_picture(page, &(Picture){.shown = pictures_preview(pair, small),
+                                     .linked = pictures_difference(pair, name),
+                                     .width = (image->width + block - 1) / block,
+                                     .height = (image->height + block - 1) / block});
         file_writer_print(page, "Difference of %s and %s: %s pixels differ, at most by %s", a, b,
                           differing, greatest);
         file_writer_print(page, "\"></a>\n<figcaption><strong>%s &minus; %s</strong> ", a, b);
@@ -147,11 +184,13 @@ static void put_peel(FileWriter *page, const PeelPicture *peel)
     file_writer_print(page,
                       "<li class=\"peel\">\n<h3>Peel %d <span>peel.%d, %s pixels</span></h3>\n",
                       peel->peel + 1, peel->peel, summary_count(peel->pixels, pixels));
-    put_picture(page, pictures_added(peel, name), peel->added.width, peel->added.height, true);
+    put_picture(page, &(Picture){pictures_added(peel, name), NULL, peel->added.width,
+                                 peel->added.height, true});
     file_writer_print(page,
                       "Light that peel %d adds\"></a>\n<figcaption>adds</figcaption>\n</figure>\n",
                       peel->peel + 1);
-    put_picture(page, pictures_accum(peel, name), peel->accum.width, peel->accum.height, true);
+    put_picture(page, &(Picture){pictures_accum(peel, name), NULL, peel->accum.width,
+                                 peel->accum.height, true});
     file_writer_print(page,
                       "Image accumulated after peel %d\"></a>\n<figcaption>so far</figcaption>\n"
                       "</figure>\n</li>\n",
@@ -169,10 +208,8 @@ static void put_peels(FileWriter *page, const Threeway *report)
         file_writer_print(page,
                           "<p>Front to back, as ref draws them: what each layer adds (a "
                           "checkerboard where it has no fragment), and the image so far, before "
-                          "the opaque surfaces behind.%s</p>\n",
-                          (int)report->peel_count < peels ? " The front layers are shown." : "");
-    if ((int)report->peel_count < peels)
-        file_writer_print(page, "<p>Shown: %zu of %d peels.</p>\n", report->peel_count, peels);
+                          "the opaque surfaces behind. Shown: %zu of %d.</p>\n",
+                          report->peel_count, peels);
     if (report->peel_count) {
         file_writer_print(page, "<ol class=\"peels\">\n");
         for (size_t i = 0; i < report->peel_count; i++)

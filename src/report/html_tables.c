@@ -60,7 +60,7 @@ static void open_row(FileWriter *page, const char *class, const char *name)
 
 static const char *pair_name(const PairReport *pair, char out[SUMMARY_NUMBER])
 {
-    snprintf(out, SUMMARY_NUMBER, "%s \u2212 %s", threeway_renderer_name(pair->a),
+    snprintf(out, SUMMARY_NUMBER, "%s\u00a0\u2212\u00a0%s", threeway_renderer_name(pair->a),
              threeway_renderer_name(pair->b));
     return out;
 }
@@ -79,40 +79,52 @@ static void put_settings(FileWriter *page, const Threeway *report)
     file_writer_print(page, "</dl>\n</section>\n");
 }
 
-static size_t put_buffer_rows(FileWriter *page, const PairReport *pair)
+static void put_buffer_row(FileWriter *page, const SummaryRow *row)
 {
     char values[SUMMARY_NUMBER], differing[SUMMARY_NUMBER], ulp[SUMMARY_NUMBER];
     char difference[SUMMARY_NUMBER];
-    size_t cursor = 0, folded = 0;
-    SummaryRow row;
-    while (summary_row(pair, &cursor, &row)) {
-        open_row(page, row.differing ? " class=\"off\"" : "", row.label);
-        file_writer_print(page, "<td>%zu</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>",
-                          row.buffers, summary_count(row.values, values),
-                          summary_count(row.differing, differing), summary_ulp(row.max_ulp, ulp),
-                          summary_real(row.max_abs, difference));
-        if (row.has_first)
-            file_writer_print(page, "x&nbsp;%d, y&nbsp;%d, channel&nbsp;%d", row.first[0],
-                              row.first[1], row.first[2]);
-        file_writer_print(page, "</td><td>%s</td></tr>\n", row.differing ? "differs" : "equal");
-        folded += row.buffers > 1 ? row.buffers : 0;
+    open_row(page, row->differing ? " class=\"off\"" : "", row->label);
+    file_writer_print(page, "<td>%zu</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>",
+                      row->buffers, summary_count(row->values, values),
+                      summary_count(row->differing, differing), summary_ulp(row->max_ulp, ulp),
+                      summary_real(row->max_abs, difference));
+    if (row->has_first)
+        file_writer_print(page, "x&nbsp;%d, y&nbsp;%d, channel&nbsp;%d", row->first[0],
+                          row->first[1], row->first[2]);
+    file_writer_print(page, "</td><td>%s</td></tr>\n", row->differing ? "differs" : "equal");
+}
+
+static const char *const buffer_columns[] = {"Buffer",  "Buffers", "Values", "Differing",
+                                             "Max ULP", "Max abs", "First",  "Result"};
+
+/* What the table above folds, in full, behind a line to open. */
+static void put_all_buffers(FileWriter *page, const PairReport *pair)
+{
+    file_writer_print(page, "<details>\n<summary>All %zu buffers, one row each</summary>\n",
+                      pair->buffer_count);
+    open_table(page, "ref against gl, every buffer", buffer_columns, 8);
+    for (size_t i = 0; i < pair->buffer_count; i++) {
+        SummaryRow row = summary_row_of(&pair->buffers[i]);
+        put_buffer_row(page, &row);
     }
-    return folded;
+    close_table(page);
+    file_writer_print(page, "</details>\n");
 }
 
 static void put_buffers(FileWriter *page, const Threeway *report)
 {
-    static const char *const columns[] = {"Buffer",  "Buffers", "Values", "Differing",
-                                          "Max ULP", "Max abs", "First",  "Result"};
     const PairReport *pair = &report->pairs[0];
     char values[SUMMARY_NUMBER], differing[SUMMARY_NUMBER];
     SummaryTotals totals = summary_totals(pair);
+    size_t cursor = 0, rows = 0;
+    SummaryRow row;
     file_writer_print(page, "<section aria-labelledby=\"buffers\">\n"
                             "<h2 id=\"buffers\">Buffer by buffer</h2>\n"
                             "<p>Every value that ref and gl store on the way to the image, "
                             "compared by its bits.</p>\n");
-    open_table(page, "ref against gl", columns, 8);
-    size_t folded = put_buffer_rows(page, pair);
+    open_table(page, "ref against gl", buffer_columns, 8);
+    for (; summary_row(pair, &cursor, &row); rows++)
+        put_buffer_row(page, &row);
     file_writer_print(page,
                       "</tbody>\n<tfoot><tr><th scope=\"row\">all</th><td>%zu</td><td>%s</td>"
                       "<td>%s</td><td></td><td></td><td></td><td>%s</td></tr></tfoot>\n</table>\n"
@@ -120,11 +132,8 @@ static void put_buffers(FileWriter *page, const Threeway *report)
                       totals.buffers, summary_count(totals.values, values),
                       summary_count(totals.values_differing, differing),
                       totals.values_differing ? "differs" : "equal");
-    if (folded)
-        file_writer_print(page,
-                          "<p>%zu equal buffers are folded into runs; every buffer that differs "
-                          "has its own row.</p>\n",
-                          folded);
+    if (rows < pair->buffer_count)
+        put_all_buffers(page, pair);
     file_writer_print(page, "</section>\n");
 }
 

@@ -11,7 +11,8 @@
 
 enum {
     SCALE_WIDTH = 512,
-    CHECKER = 8
+    CHECKER = 8,
+    PREVIEW_WIDTH = 640
 };
 
 const char *pictures_final(int renderer, char out[PICTURES_NAME])
@@ -25,6 +26,18 @@ const char *pictures_difference(const PairReport *pair, char out[PICTURES_NAME])
     snprintf(out, PICTURES_NAME, "difference-%s-%s.png", threeway_renderer_name(pair->a),
              threeway_renderer_name(pair->b));
     return out;
+}
+
+const char *pictures_preview(const PairReport *pair, char out[PICTURES_NAME])
+{
+    snprintf(out, PICTURES_NAME, "difference-%s-%s-small.png", threeway_renderer_name(pair->a),
+             threeway_renderer_name(pair->b));
+    return out;
+}
+
+int pictures_block(const Threeway *report)
+{
+    return (report->frames[RENDERER_REF].final.width + PREVIEW_WIDTH - 1) / PREVIEW_WIDTH;
 }
 
 const char *pictures_accum(const PeelPicture *peel, char out[PICTURES_NAME])
@@ -102,20 +115,29 @@ static Result write_peel(const PeelPicture *peel, const char *dir)
     return write_made(made, &image, dir, pictures_added(peel, name));
 }
 
+static Result write_difference(const Threeway *report, const PairReport *pair, const char *dir)
+{
+    const Image *a = &report->frames[pair->a].final, *b = &report->frames[pair->b].final;
+    char name[PICTURES_NAME];
+    Image image;
+    Result made = heatmap_image(a, b, &image);
+    Result result = write_made(made, &image, dir, pictures_difference(pair, name));
+    if (result != RESULT_OK)
+        return result;
+    made = heatmap_reduced(a, b, pictures_block(report), &image);
+    return write_made(made, &image, dir, pictures_preview(pair, name));
+}
+
 Result pictures_write(const Threeway *report, const char *dir)
 {
     char name[PICTURES_NAME];
-    Image image = {0};
     Result result = RESULT_OK;
     for (int i = 0; i < RENDERER_COUNT && result == RESULT_OK; i++)
         result = write_image(&report->frames[i].display, dir, pictures_final(i, name));
-    for (int i = 0; i < 3 && result == RESULT_OK; i++) {
-        const PairReport *pair = &report->pairs[i];
-        Result made =
-            heatmap_image(&report->frames[pair->a].final, &report->frames[pair->b].final, &image);
-        result = write_made(made, &image, dir, pictures_difference(pair, name));
-    }
+    for (int i = 0; i < 3 && result == RESULT_OK; i++)
+        result = write_difference(report, &report->pairs[i], dir);
     if (result == RESULT_OK) {
+        Image image;
         Result made = heatmap_scale(SCALE_WIDTH, 16, &image);
         result = write_made(made, &image, dir, PICTURES_SCALE);
     }

@@ -52,28 +52,33 @@ static bool row_folds(const PairReport *pair, size_t begin, size_t *end)
     return pair->buffer_count > SUMMARY_UNFOLDED && *end - begin >= 3;
 }
 
+SummaryRow summary_row_of(const BufferMetrics *buffer)
+{
+    SummaryRow row = {.buffers = 1,
+                      .values = buffer->values,
+                      .differing = buffer->differing,
+                      .max_ulp = buffer->max_ulp,
+                      .max_abs = buffer->max_abs,
+                      .has_first = buffer->has_first};
+    memcpy(row.first, buffer->first, sizeof row.first);
+    snprintf(row.label, sizeof row.label, "%s", buffer->name);
+    return row;
+}
+
 bool summary_row(const PairReport *pair, size_t *cursor, SummaryRow *out)
 {
     size_t begin = *cursor, end;
     if (begin >= pair->buffer_count)
         return false;
-    const BufferMetrics *first = &pair->buffers[begin];
-    *out = (SummaryRow){.buffers = 1,
-                        .values = first->values,
-                        .differing = first->differing,
-                        .max_ulp = first->max_ulp,
-                        .max_abs = first->max_abs,
-                        .has_first = first->has_first};
-    memcpy(out->first, first->first, sizeof out->first);
-    if (!row_folds(pair, begin, &end)) {
-        snprintf(out->label, sizeof out->label, "%s", first->name);
-        *cursor = begin + 1;
+    *out = summary_row_of(&pair->buffers[begin]);
+    *cursor = begin + 1;
+    if (!row_folds(pair, begin, &end))
         return true;
-    }
     out->buffers = end - begin;
     for (size_t i = begin + 1; i < end; i++)
         out->values += pair->buffers[i].values;
-    snprintf(out->label, sizeof out->label, "%s to %s", first->name, pair->buffers[end - 1].name);
+    snprintf(out->label, sizeof out->label, "%s to %s", pair->buffers[begin].name,
+             pair->buffers[end - 1].name);
     *cursor = end;
     return true;
 }
@@ -177,15 +182,13 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
                  "order on both sides.");
         return;
     }
-    char p99[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER];
-    double share = 100.0 * (double)unaffected->pixels /
-                   (double)(pair->final.pixels ? pair->final.pixels : unaffected->pixels);
+    char p99[SUMMARY_NUMBER], same[SUMMARY_NUMBER], all[SUMMARY_NUMBER];
     snprintf(out, SUMMARY_LINE,
              "ref and truth %s: 99th percentile of the relative difference %s (tolerance %g) over "
-             "%s pixels with the same fragments in the same order (%.2f %%).",
+             "%s of %s pixels, those with the same fragments in the same order.",
              unaffected->p99_rel <= report->tolerance ? "agree" : "differ",
              summary_real(unaffected->p99_rel, p99), report->tolerance,
-             summary_count(unaffected->pixels, pixels), share);
+             summary_count(unaffected->pixels, same), summary_count(pair->final.pixels, all));
 }
 
 void summary_residual(const Threeway *report, char out[SUMMARY_LINE])

@@ -30,6 +30,7 @@ typedef struct SummaryRow {
 enum {
     SUMMARY_UNFOLDED = 40
 };
+SummaryRow summary_row_of(const BufferMetrics *buffer);
 bool summary_row(const PairReport *pair, size_t *cursor, SummaryRow *out);
 
 typedef struct SummaryTotals {

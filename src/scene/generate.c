@@ -305,7 +305,7 @@ static Result generate_alpha_ladder(Scene *out)
     static const double alphas[LADDER_ROWS] = {1.0 / 255.0, 0.01, 0.25,          0.5,
                                                0.75,        0.99, 254.0 / 255.0, 1.0};
     Builder builder = builder_begin("alpha_ladder");
-    ladder_backdrop(&builder, -1.0);
+    ladder_backdrop(&builder, -0.5);
     Mesh mesh;
     Result made = shapes_plane(0.75, 0.75, 1, 1, &mesh);
     uint32_t quad = builder_mesh(&builder, made, &mesh);

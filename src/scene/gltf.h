@@ -4,15 +4,29 @@
 
 #include "scene/scene.h"
 
-/* Loads a .gltf or .glb file. Geometry is unaltered: triangulated only, vertex arrays shared as
- * in the file. Missing normals are made flat, as glTF demands. A scene without cameras gets a
- * framing camera, one without lights the default lights. What the file has and Peel does not
- * model is named in one warning.
- * Extras (on nodes; the only ones Assimp passes on): see data/scenes/README or gltf_write.
- * Fails with BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED and a one-line message; *out is then empty. */
+/* Loads a .gltf or .glb file (by extension, then by content). Geometry is unaltered: triangles,
+ * strips and fans become triangles in the file's order; vertices that nothing uses are left out;
+ * primitives made of the same accessors share one mesh. Missing normals are made flat, as glTF
+ * demands. World matrices are products of the nodes' matrices in double, from the root down. A
+ * scene without cameras gets a framing camera, one without point lights the default lights. What
+ * the file has and Peel does not model is named in one warning.
+ *
+ * Beyond glTF, extras of nodes:
+ *   "attenuation": [c, l, q]        on a light's node; without it (0, 0, 1), as the extension says
+ *   "ambient": [r, g, b]            on any node; 0.25 without
+ *   "background": [r, g, b]         on any node; 0 without
+ *   "light_degrees_per_second": d   on any node; 0 without
+ * Occlusion is 1: glTF has it only as a texture.
+ *
+ * Fails with BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED and a one-line message that begins with path;
+ * *out is then empty. */
 Result gltf_load(const char *path, Scene *out);
 
-/* Writes .gltf (buffers embedded) or .glb by the extension, to a temporary name, then renames. */
+/* Writes .gltf (buffers embedded) or .glb by the extension, to a temporary name, then renames. All
+ * numbers keep their bits; loading gives the same floats, and matrices rounded to float. The extras
+ * above are written. Dropped: occlusion other than 1 (with a warning), meshes without an instance,
+ * the cutoff of materials that are not MASK. BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED (2 GiB of
+ * geometry or more). */
 Result gltf_write(const Scene *scene, const char *path);
 
 #endif

@@ -9,7 +9,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* Source: glTF 2.0, 4.4 (binary glTF layout). */
 #define GLB_MAGIC 0x46546c67u
@@ -105,28 +104,4 @@ char *gltf_file_data_uri(const unsigned char *bytes, size_t count)
         *out++ = i + 2 < count ? digits[group & 63] : '=';
     }
     return uri;
-}
-
-Result gltf_file_write(const char *path, const void *bytes, size_t count)
-{
-    size_t room = strlen(path) + 32;
-    char *temporary = memory_array(room, 1);
-    if (!temporary)
-        return RESULT_NO_MEMORY;
-    snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
-    FILE *file = fopen(temporary, "wb");
-    bool good = file && fwrite(bytes, 1, count, file) == count;
-    int error = errno;
-    if (file && fclose(file) && good) {
-        good = false;
-        error = errno;
-    }
-    if (good && rename(temporary, path)) {
-        good = false;
-        error = errno;
-    }
-    if (file && !good)
-        remove(temporary);
-    free(temporary);
-    return good ? RESULT_OK : result_fail(RESULT_IO, "%s: cannot write: %s", path, strerror(error));
 }

@@ -22,7 +22,4 @@ Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t 
  * without memory. */
 char *gltf_file_data_uri(const unsigned char *bytes, size_t count);
 
-/* Writes to a temporary name in the same folder, then renames: all or nothing. */
-Result gltf_file_write(const char *path, const void *bytes, size_t count);
-
 #endif

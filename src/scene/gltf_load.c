@@ -1,0 +1,338 @@
+#include "base/memory.h"
+#include "scene/builder.h"
+#include "scene/gltf.h"
+#include "scene/gltf_assimp.h"
+#include "scene/gltf_json.h"
+#include "scene/gltf_mesh.h"
+
+#include <assimp/material.h>
+#include <assimp/scene.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a primitive is made of: equal keys give one mesh of ours. */
+typedef struct MeshKey {
+    size_t position, normal, uv, indices, mode;
+    uint32_t mesh; /* ours */
+} MeshKey;
+
+typedef struct Loader {
+    const char *path;
+    const GltfJson *json;
+    const struct aiScene *assimp;
+    Builder builder;
+    uint32_t *materials; /* ours, by Assimp's index; UINT32_MAX until used */
+    MeshKey *keys;
+    size_t key_count, key_room;
+    char node_name[128]; /* of the node at hand, for messages */
+} Loader;
+
+static Result fail(Loader *loader, const char *expected)
+{
+    if (!loader->builder.result)
+        loader->builder.result = result_fail(RESULT_BAD_INPUT, "%s: %s: expected %s", loader->path,
+                                             loader->node_name, expected);
+    return loader->builder.result;
+}
+
+/* ---- materials ---------------------------------------------------------------------------------
+ */
+
+static float material_float(const struct aiMaterial *from, const char *key, float fallback)
+{
+    float value = fallback;
+    aiGetMaterialFloat(from, key, 0, 0, &value);
+    return value;
+}
+
+/* Assimp fills in glTF's defaults: base colour 1, metallic 1, roughness 1, OPAQUE, cutoff 0.5. */
+static uint32_t add_material(Loader *loader, const struct aiMaterial *from)
+{
+    Material material = {.occlusion = 1.0f};
+    struct aiColor4D color = {1.0f, 1.0f, 1.0f, 1.0f};
+    struct aiString mode = {0}, name = {0};
+    int double_sided = 0;
+    aiGetMaterialColor(from, "$clr.base", 0, 0, &color);
+    aiGetMaterialString(from, "$mat.gltf.alphaMode", 0, 0, &mode);
+    aiGetMaterialString(from, "?mat.name", 0, 0, &name);
+    aiGetMaterialInteger(from, "$mat.twosided", 0, 0, &double_sided);
+    memcpy(material.base_color, (const float[4]){color.r, color.g, color.b, color.a},
+           sizeof material.base_color);
+    material.metallic = material_float(from, "$mat.metallicFactor", 1.0f);
+    material.roughness = material_float(from, "$mat.roughnessFactor", 1.0f);
+    material.alpha_cutoff = material_float(from, "$mat.gltf.alphaCutoff", 0.5f);
+    material.double_sided = double_sided != 0;
+    if (strcmp(mode.data, "BLEND") == 0)
+        material.alpha_mode = ALPHA_BLEND;
+    else if (strcmp(mode.data, "MASK") == 0)
+        material.alpha_mode = ALPHA_MASK;
+    else if (mode.length && strcmp(mode.data, "OPAQUE") != 0)
+        fail(loader, "a material with alphaMode OPAQUE, MASK or BLEND");
+    return builder_material(&loader->builder, &material, name.data);
+}
+
+/* ---- nodes -------------------------------------------------------------------------------------
+ */
+
+/* An Assimp matrix is row-major: a1 to a4 is the first row. */
+static Matrix from_assimp(const struct aiMatrix4x4 *a)
+{
+    return (Matrix){{(double)a->a1, (double)a->b1, (double)a->c1, (double)a->d1, (double)a->a2,
+                     (double)a->b2, (double)a->c2, (double)a->d2, (double)a->a3, (double)a->b3,
+                     (double)a->c3, (double)a->d3, (double)a->a4, (double)a->b4, (double)a->c4,
+                     (double)a->d4}};
+}
+
+static uint32_t find_mesh(Loader *loader, const json_t *primitive, const struct aiMesh *from,
+                          const char *label)
+{
+    const json_t *attributes = json_object_get(primitive, "attributes");
+    MeshKey key = {.position = gltf_json_index(attributes, "POSITION", SIZE_MAX),
+                   .normal = gltf_json_index(attributes, "NORMAL", SIZE_MAX),
+                   .uv = gltf_json_index(attributes, "TEXCOORD_0", SIZE_MAX),
+                   .indices = gltf_json_index(primitive, "indices", SIZE_MAX),
+                   .mode = gltf_json_index(primitive, "mode", 4)};
+    for (size_t i = 0; i < loader->key_count; i++) {
+        const MeshKey *known = &loader->keys[i];
+        if (known->position == key.position && known->normal == key.normal && known->uv == key.uv &&
+            known->indices == key.indices && known->mode == key.mode)
+            return known->mesh;
+    }
+    void *keys = loader->keys;
+    if (!loader->builder.result)
+        loader->builder.result =
+            memory_grow(&keys, &loader->key_room, loader->key_count + 1, sizeof key);
+    if (loader->builder.result)
+        return 0;
+    loader->keys = keys;
+    const json_t *source = gltf_json_element(loader->json, "accessors",
+                                             key.indices != SIZE_MAX ? key.indices : key.position);
+    size_t count = gltf_json_index(source, "count", 0);
+    Mesh mesh = {0};
+    Result made = gltf_mesh_convert(from, key.mode == 4 ? count / 3 : count - 2, label, &mesh);
+    key.mesh = builder_mesh(&loader->builder, made, &mesh);
+    loader->keys[loader->key_count++] = key;
+    return key.mesh;
+}
+
+static void add_instances(Loader *loader, const json_t *node, const struct aiNode *from,
+                          const Matrix *world)
+{
+    size_t number = gltf_json_index(node, "mesh", SIZE_MAX), i;
+    unsigned drawn = 0;
+    const json_t *json_mesh = gltf_json_element(loader->json, "meshes", number), *primitive;
+    const char *name = json_string_value(json_object_get(node, "name"));
+    json_array_foreach(json_object_get(json_mesh, "primitives"), i, primitive)
+    {
+        if (!gltf_json_drawn(primitive) || loader->builder.result)
+            continue;
+        if (drawn >= from->mNumMeshes) {
+            fail(loader, "as many primitives as Assimp gives");
+            return;
+        }
+        char label[256];
+        const struct aiMesh *mesh = loader->assimp->mMeshes[from->mMeshes[drawn++]];
+        snprintf(label, sizeof label, "%s: mesh %zu primitive %zu", loader->path, number, i);
+        Instance instance = {.world = *world, .mesh = find_mesh(loader, primitive, mesh, label)};
+        uint32_t *material = &loader->materials[mesh->mMaterialIndex];
+        if (*material == UINT32_MAX)
+            *material = add_material(loader, loader->assimp->mMaterials[mesh->mMaterialIndex]);
+        instance.material = *material;
+        builder_instance(&loader->builder, &instance, name);
+    }
+}
+
+/* glTF's camera knows no scale: a scaled node's axes are brought back to unit length. */
+static void add_camera(Loader *loader, const json_t *node, const Matrix *world)
+{
+    const json_t *from =
+        gltf_json_element(loader->json, "cameras", gltf_json_index(node, "camera", SIZE_MAX));
+    const json_t *perspective = json_object_get(from, "perspective");
+    const char *name = json_string_value(json_object_get(node, "name"));
+    if (!perspective)
+        return;
+    const json_t *far = json_object_get(perspective, "zfar");
+    Camera camera = {.world = *world,
+                     .yfov = json_number_value(json_object_get(perspective, "yfov")),
+                     .near = json_number_value(json_object_get(perspective, "znear")),
+                     .far = far ? json_number_value(far) : INFINITY};
+    for (int c = 0; c < 3; c++) {
+        double *axis = camera.world.m + 4 * c;
+        double length = sqrt((axis[0] * axis[0] + axis[1] * axis[1]) + axis[2] * axis[2]);
+        /* Not for what float rounding does: placements stay as they were written. */
+        for (int r = 0; r < 3 && fabs(length - 1.0) > 1e-5; r++)
+            axis[r] /= length;
+    }
+    if (!name)
+        name = json_string_value(json_object_get(from, "name"));
+    builder_camera(&loader->builder, &camera, name);
+}
+
+/* Three numbers of an extra into out; false where it is absent. */
+static bool extra_triple(Loader *loader, const json_t *node, const char *key, float out[3])
+{
+    const json_t *value = json_object_get(json_object_get(node, "extras"), key);
+    if (!value)
+        return false;
+    for (size_t i = 0; i < 3; i++) {
+        const json_t *number = json_array_get(value, i);
+        if (json_array_size(value) != 3 || !json_is_number(number)) {
+            fail(loader, "three numbers as the extras ambient, background and attenuation");
+            return false;
+        }
+        out[i] = (float)json_number_value(number);
+    }
+    return true;
+}
+
+static void add_light(Loader *loader, const json_t *node, const Matrix *world)
+{
+    const json_t *extensions = json_object_get(loader->json->root, "extensions");
+    const json_t *reference =
+        json_object_get(json_object_get(node, "extensions"), "KHR_lights_punctual");
+    const json_t *from = json_array_get(
+        json_object_get(json_object_get(extensions, "KHR_lights_punctual"), "lights"),
+        gltf_json_index(reference, "light", SIZE_MAX));
+    const char *type = json_string_value(json_object_get(from, "type"));
+    if (!type || strcmp(type, "point") != 0)
+        return;
+    const json_t *color = json_object_get(from, "color");
+    const json_t *intensity = json_object_get(from, "intensity");
+    Light light = {.attenuation = {0.0f, 0.0f, 1.0f}};
+    for (size_t i = 0; i < 3; i++) {
+        float factor = color ? (float)json_number_value(json_array_get(color, i)) : 1.0f;
+        light.color[i] = factor * (intensity ? (float)json_number_value(intensity) : 1.0f);
+        light.position[i] = world->m[12 + i];
+    }
+    extra_triple(loader, node, "attenuation", light.attenuation);
+    builder_light(&loader->builder, &light);
+}
+
+static void read_surroundings(Loader *loader, const json_t *node)
+{
+    Scene *scene = &loader->builder.scene;
+    const json_t *turn =
+        json_object_get(json_object_get(node, "extras"), "light_degrees_per_second");
+    extra_triple(loader, node, "ambient", scene->ambient);
+    extra_triple(loader, node, "background", scene->background);
+    if (json_is_number(turn))
+        scene->light_degrees_per_second = json_number_value(turn);
+    else if (turn)
+        fail(loader, "a number as the extra light_degrees_per_second");
+}
+
+/* Assimp's nodes and the file's, side by side: same children in the same order. */
+static void add_node(Loader *loader, size_t number, const struct aiNode *from, const Matrix *parent)
+{
+    if (loader->builder.result)
+        return;
+    const json_t *node = gltf_json_element(loader->json, "nodes", number);
+    const json_t *children = json_object_get(node, "children");
+    const char *name = json_string_value(json_object_get(node, "name"));
+    Matrix local = from_assimp(&from->mTransformation);
+    Matrix world = matrix_multiply(parent, &local);
+    snprintf(loader->node_name, sizeof loader->node_name, "node %zu (%.80s)", number,
+             name ? name : "unnamed");
+    if (local.m[3] != 0.0 || local.m[7] != 0.0 || local.m[11] != 0.0 || local.m[15] != 1.0)
+        fail(loader, "an affine matrix, with a last row of 0 0 0 1");
+    add_instances(loader, node, from, &world);
+    add_camera(loader, node, &world);
+    add_light(loader, node, &world);
+    read_surroundings(loader, node);
+    if (json_array_size(children) != from->mNumChildren) {
+        fail(loader, "as many children as Assimp gives");
+        return;
+    }
+    for (unsigned i = 0; i < from->mNumChildren; i++)
+        add_node(loader, (size_t)json_integer_value(json_array_get(children, i)),
+                 from->mChildren[i], &world);
+}
+
+/* Assimp puts several roots below one of its own, and uses a single one as it is. */
+static void add_roots(Loader *loader)
+{
+    const json_t *scene = gltf_json_element(loader->json, "scenes", loader->json->scene);
+    const json_t *roots = json_object_get(scene, "nodes");
+    const struct aiNode *top = loader->assimp->mRootNode;
+    Matrix identity = matrix_identity();
+    size_t count = json_array_size(roots);
+    snprintf(loader->node_name, sizeof loader->node_name, "scene %zu", loader->json->scene);
+    if (count > 1 && count != top->mNumChildren) {
+        fail(loader, "as many root nodes as Assimp gives");
+        return;
+    }
+    for (size_t i = 0; i < count; i++)
+        add_node(loader, (size_t)json_integer_value(json_array_get(roots, i)),
+                 count == 1 ? top : top->mChildren[i], &identity);
+}
+
+/* ---- the whole ---------------------------------------------------------------------------------
+ */
+
+static Result convert(Loader *loader, Scene *out)
+{
+    const char *slash = strrchr(loader->path, '/');
+    char *name = strdup(slash ? slash + 1 : loader->path);
+    size_t materials = loader->assimp->mNumMaterials;
+    loader->materials = memory_array(materials, sizeof *loader->materials);
+    if (!name || !loader->materials) {
+        free(name);
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", loader->path);
+    }
+    *strrchr(name, '.') = 0; /* the extension was checked */
+    memset(loader->materials, 0xff, materials * sizeof *loader->materials);
+    loader->builder = builder_begin(name);
+    free(name);
+    add_roots(loader);
+    return builder_finish(&loader->builder, out);
+}
+
+/* A file without cameras or lights gets ours. */
+static Result complete(Scene *scene)
+{
+    Result result = RESULT_OK;
+    bool added = scene->camera_count == 0 || scene->light_count == 0;
+    if (scene->light_count == 0)
+        result = scene_add_default_lights(scene);
+    if (!result && scene->camera_count == 0)
+        result = scene_add_framing_camera(scene);
+    return result || !added ? result : scene_validate(scene);
+}
+
+/* The file's name before a message about its parts, unless it is there already. */
+static Result name_file(const char *path, Result result)
+{
+    if (!result || strncmp(result_message(), path, strlen(path)) == 0)
+        return result;
+    char *message = strdup(result_message());
+    if (message)
+        result_fail(result, "%s: %s", path, message);
+    free(message);
+    return result;
+}
+
+Result gltf_load(const char *path, Scene *out)
+{
+    *out = (Scene){0};
+    GltfJson json;
+    Result result = gltf_json_read(path, &json);
+    if (result)
+        return result;
+    Loader loader = {.path = path, .json = &json};
+    result = gltf_assimp_import(path, &json, &loader.assimp);
+    if (!result)
+        result = convert(&loader, out);
+    if (!result)
+        result = complete(out);
+    if (result)
+        scene_free(out);
+    else
+        gltf_json_warn(&json, path);
+    gltf_assimp_release(loader.assimp);
+    free(loader.materials);
+    free(loader.keys);
+    gltf_json_free(&json);
+    return name_file(path, result);
+}

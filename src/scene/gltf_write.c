@@ -1,3 +1,4 @@
+#include "base/file.h"
 #include "base/memory.h"
 #include "scene/gltf.h"
 #include "scene/gltf_file.h"
@@ -423,10 +424,10 @@ static Result write_document(Writer *writer, const char *path, bool binary)
         size_t count = 0;
         result = gltf_file_assemble(text, writer->bytes, writer->byte_count, &bytes, &count);
         if (!result)
-            result = gltf_file_write(path, bytes, count);
+            result = file_write(path, bytes, count);
         free(bytes);
     } else if (!result) {
-        result = gltf_file_write(path, text, strlen(text));
+        result = file_write(path, text, strlen(text));
     }
     free(text);
     json_decref(root);

@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PICTURE_WIDTH_MAX = 320 };
+enum {
+    PICTURE_WIDTH_MAX = 320
+};
 
 const char *threeway_renderer_name(int renderer)
 {
@@ -130,9 +132,8 @@ static Result compare_structure(Run *run)
 
 static Result compare_pairs(Run *run)
 {
-    static const int sides[3][2] = {{RENDERER_REF, RENDERER_GL},
-                                    {RENDERER_REF, RENDERER_TRUTH},
-                                    {RENDERER_GL, RENDERER_TRUTH}};
+    static const int sides[3][2] = {
+        {RENDERER_REF, RENDERER_GL}, {RENDERER_REF, RENDERER_TRUTH}, {RENDERER_GL, RENDERER_TRUTH}};
     Threeway *report = run->report;
     for (int i = 0; i < 3; i++) {
         PairReport *pair = &report->pairs[i];
@@ -158,8 +159,7 @@ static bool judge(const Threeway *report)
     for (size_t i = 0; i < ref_gl->buffer_count; i++)
         if (ref_gl->buffers[i].differing > 0)
             return false;
-    return ref_truth->unaffected.p99_rel <= report->tolerance &&
-           ref_truth->final.nonfinite == 0;
+    return ref_truth->unaffected.p99_rel <= report->tolerance && ref_truth->final.nonfinite == 0;
 }
 
 /* ---- pictures of the peels ---- */
@@ -178,7 +178,8 @@ static Result reduce(const Image *image, int step, Image *out)
             for (int j = y * step; j < (y + 1) * step && j < image->height; j++)
                 for (int i = x * step; i < (x + 1) * step && i < image->width; i++, count++)
                     for (int c = 0; c < 4; c++)
-                        sum[c] += (double)format_channel(image->format, image_pixel(image, i, j), c);
+                        sum[c] +=
+                            (double)format_channel(image->format, image_pixel(image, i, j), c);
             float *pixel = image_pixel(out, x, y);
             for (int c = 0; c < 4; c++)
                 pixel[c] = (float)(sum[c] / count);
@@ -278,8 +279,8 @@ static Result run_all(Run *run, bool keep_pictures)
 }
 
 Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc,
-                    const Renderer renderers[RENDERER_COUNT], double tolerance,
-                    bool keep_pictures, Threeway *out)
+                    const Renderer renderers[RENDERER_COUNT], double tolerance, bool keep_pictures,
+                    Threeway *out)
 {
     *out = (Threeway){.scene_name = scene->name,
                       .scene_path = path,

@@ -5,10 +5,15 @@
 #include "compare/metrics.h"
 #include "frame/frame.h"
 
-enum { RENDERER_REF, RENDERER_GL, RENDERER_TRUTH, RENDERER_COUNT };
+enum {
+    RENDERER_REF,
+    RENDERER_GL,
+    RENDERER_TRUTH,
+    RENDERER_COUNT
+};
 
 typedef struct PairReport {
-    int a, b; /* RENDERER_… */
+    int a, b;               /* RENDERER_… */
     BufferMetrics *buffers; /* ref–gl only: one per traced buffer, in order of completion */
     size_t buffer_count;
     FinalMetrics final;
@@ -28,9 +33,9 @@ typedef struct StructureReport {
 /* One peel, for pictures: ref's accumulation after it, and what it added. */
 typedef struct PeelPicture {
     int peel;
-    uint64_t pixels;  /* with a fragment */
-    Image accum;      /* FORMAT_RGBA32F, reduced to at most 320 pixels wide; A = transmittance */
-    Image added;      /* the same size: this peel's contribution, RGB; A = 1 where a fragment is */
+    uint64_t pixels; /* with a fragment */
+    Image accum;     /* FORMAT_RGBA32F, reduced to at most 320 pixels wide; A = transmittance */
+    Image added;     /* the same size: this peel's contribution, RGB; A = 1 where a fragment is */
 } PeelPicture;
 
 typedef struct Threeway {
@@ -42,17 +47,19 @@ typedef struct Threeway {
     PairReport pairs[3]; /* ref–gl, ref–truth, gl–truth */
     StructureReport structure;
     PeelPicture *peels;
-    size_t peel_count;   /* pictures kept, at most PEEL_PICTURES_MAX */
-    bool agree;          /* the verdict: exit code 0 */
+    size_t peel_count; /* pictures kept, at most PEEL_PICTURES_MAX */
+    bool agree;        /* the verdict: exit code 0 */
 } Threeway;
 
-enum { PEEL_PICTURES_MAX = 64 };
+enum {
+    PEEL_PICTURES_MAX = 64
+};
 
 /* Renderers in the order of RENDERER_…; any may fail, and the message says which.
  * keep_pictures: fill peels. The caller frees with threeway_free. */
 Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc,
-                    const Renderer renderers[RENDERER_COUNT], double tolerance,
-                    bool keep_pictures, Threeway *out);
+                    const Renderer renderers[RENDERER_COUNT], double tolerance, bool keep_pictures,
+                    Threeway *out);
 void threeway_free(Threeway *report);
 
 const char *threeway_renderer_name(int renderer); /* "ref", "gl", "truth" */

@@ -1,130 +1,12 @@
-/* ref/truth end to end: scenes whose order and colours are known by hand, and a ray caster as a
- * second opinion. */
-#include "base/random.h"
-#include "frame/view.h"
-#include "ref/truth/truth.h"
-#include "testing.h"
+/* ref/truth end to end: scenes whose order and colours are known by hand. */
+#include "ref/truth/radiance.h"
+#include "truth_stage.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum {
-    ITEMS_MAX = 8,
-    LAYERS_MAX = 64,
-    NONE = -1
+    NONE = -1 /* no quad */
 };
-
-#define EXPECT(condition, ...)                                                                     \
-    do {                                                                                           \
-        if (!(condition))                                                                          \
-            ck_abort_msg(__VA_ARGS__);                                                             \
-    } while (0)
-
-/* A scene in static arrays. The camera sits at 0 and looks down −z; 90° of view, near 1, far 3:
- * its projection is made of small integers. */
-typedef struct Stage {
-    Scene scene;
-    Camera camera;
-    Light lights[2];
-    Mesh meshes[ITEMS_MAX];
-    Material materials[ITEMS_MAX];
-    Instance instances[ITEMS_MAX];
-    float positions[ITEMS_MAX][12], normals[ITEMS_MAX][12];
-} Stage;
-
-static uint32_t quad_index[6] = {0, 1, 2, 0, 2, 3};
-
-static Stage *stage_new(void)
-{
-    Stage *stage = calloc(1, sizeof *stage);
-    stage->camera = (Camera){.world = matrix_identity(), .near = 1, .far = 3};
-    stage->camera.yfov = 1.5707963267948966;
-    stage->scene = (Scene){.meshes = stage->meshes,
-                           .materials = stage->materials,
-                           .instances = stage->instances,
-                           .lights = stage->lights,
-                           .cameras = &stage->camera,
-                           .camera_count = 1,
-                           .ambient = {1, 1, 1}};
-    return stage;
-}
-
-/* A square of the given half side at (0, 0, −depth), facing the camera. */
-static Material *add_quad(Stage *stage, float depth, float half, const float color[4])
-{
-    Scene *scene = &stage->scene;
-    size_t i = scene->mesh_count++;
-    const float x[4] = {-half, half, half, -half}, y[4] = {-half, -half, half, half};
-    for (int k = 0; k < 4; k++) {
-        const float position[3] = {x[k], y[k], -depth}, normal[3] = {0, 0, 1};
-        memcpy(&stage->positions[i][3 * k], position, sizeof position);
-        memcpy(&stage->normals[i][3 * k], normal, sizeof normal);
-    }
-    stage->meshes[i] = (Mesh){.vertex_count = 4,
-                              .triangle_count = 2,
-                              .position = stage->positions[i],
-                              .normal = stage->normals[i],
-                              .index = quad_index};
-    stage->materials[i] = (Material){.roughness = 0.5f, .occlusion = 1};
-    memcpy(stage->materials[i].base_color, color, sizeof stage->materials[i].base_color);
-    stage->materials[i].alpha_mode = color[3] < 1.0f ? ALPHA_BLEND : ALPHA_OPAQUE;
-    stage->instances[i] =
-        (Instance){.mesh = (uint32_t)i, .material = (uint32_t)i, .world = matrix_identity()};
-    scene->material_count = scene->instance_count = scene->mesh_count;
-    return &stage->materials[i];
-}
-
-/* ---- a sink that keeps the layers --------------------------------------------------------------
- */
-
-typedef struct Layers {
-    TraceSink sink;
-    int width, height;
-    uint32_t *id[LAYERS_MAX + 1]; /* by step; a layer never sent is NULL */
-    uint8_t *seen;                /* how often opaque.primitive came, per pixel */
-} Layers;
-
-static Result layers_put(TraceSink *sink, const TraceBuffer *buffer)
-{
-    Layers *layers = (Layers *)sink;
-    size_t pixels = (size_t)buffer->image_width * (size_t)buffer->image_height;
-    ck_assert_int_eq(buffer->format, FORMAT_R32UI);
-    ck_assert_int_eq(buffer->x % TRACE_TILE + buffer->y % TRACE_TILE, 0);
-    ck_assert_int_le(buffer->step, LAYERS_MAX);
-    char name[32] = "opaque.primitive";
-    if (buffer->step > 0)
-        snprintf(name, sizeof name, "peel.%d.primitive", buffer->step - 1);
-    ck_assert_str_eq(buffer->name, name);
-    if (!layers->seen)
-        layers->seen = calloc(pixels, 1);
-    layers->width = buffer->image_width;
-    layers->height = buffer->image_height;
-    uint32_t **id = &layers->id[buffer->step];
-    if (!*id) {
-        *id = malloc(pixels * sizeof **id);
-        memset(*id, 0xff, pixels * sizeof **id);
-    }
-    for (int row = 0; row < buffer->height; row++) {
-        size_t at = (size_t)(buffer->y + row) * (size_t)buffer->image_width + (size_t)buffer->x;
-        memcpy(&(*id)[at], (const char *)buffer->pixels + (size_t)row * buffer->row_bytes,
-               (size_t)buffer->width * sizeof **id);
-        for (int x = 0; x < buffer->width && buffer->step == 0; x++)
-            layers->seen[at + (size_t)x]++;
-    }
-    return RESULT_OK;
-}
-
-static void layers_free(Layers *layers)
-{
-    for (int i = 0; i <= LAYERS_MAX; i++)
-        free(layers->id[i]);
-    free(layers->seen);
-}
-
-static uint32_t layer_id(const Layers *layers, int step, int x, int y)
-{
-    return layers->id[step] ? layers->id[step][y * layers->width + x] : UINT32_MAX;
-}
 
 /* Renders and asserts that every pixel has these four values, to the bit, and the display that
  * belongs to them. */
@@ -151,10 +33,6 @@ static void check_color(const Stage *stage, const RenderDesc *desc, const float 
 }
 
 static const RenderDesc small = {.width = 8, .height = 8, .threads = 1};
-static const float red[4] = {1, 0, 0, 0.5f}, green[4] = {0, 1, 0, 0.25f}, blue[4] = {0, 0, 1, 1};
-
-/* ---- by hand -----------------------------------------------------------------------------------
- */
 
 START_TEST(test_empty_scene)
 {
@@ -347,6 +225,46 @@ START_TEST(test_orientation)
 }
 END_TEST
 
+/* A slanted quad whose normals are a linear function of the place: each pixel's light is that of
+ * the point where its ray meets the plane. */
+START_TEST(test_shading_place)
+{
+    Stage *stage = stage_new();
+    add_quad(stage, 2, 8, blue);
+    for (int k = 0; k < 4; k++) { /* z = −2 + y/4, from far behind the far plane to before near */
+        float *p = &stage->positions[0][3 * k];
+        const float normal[3] = {p[0], p[1], 4};
+        p[2] = -2 + p[1] / 4;
+        memcpy(&stage->normals[0][3 * k], normal, sizeof normal);
+    }
+    stage->scene.light_count = 1;
+    stage->lights[0] = (Light){{0.5, 1.25, -1}, {2, 3, 4}, {0, 0, 1}};
+    ViewLight light = {{0.5f, 1.25f, -1}, {2, 3, 4}, {0, 0, 1}};
+    View view = {.light_count = 1, .lights = &light, .ambient = {1, 1, 1}};
+    Frame frame;
+    const RenderDesc desc = {.width = 96, .height = 96};
+    ck_assert_int_eq(truth_render(&stage->scene, &desc, NULL, &frame), RESULT_OK);
+    int lit = 0;
+    for (int i = 0; i < 96 * 96; i++) {
+        double x = (i % 96 + 0.5) / 48 - 1, y = 1 - (i / 96 + 0.5) / 48;
+        double depth = 2 / (1 + y / 4); /* of the plane along the ray (x, y, −1) */
+        Surface surface = {
+            {x * depth, y * depth, -depth}, {x * depth, y * depth, 4}, &stage->materials[0]};
+        double rgb[3];
+        radiance_shade(&view, &surface, rgb);
+        const float *final = image_pixel(&frame.final, i % 96, i / 96);
+        for (int k = 0; k < 3; k++)
+            EXPECT(fabs(final[k] - rgb[k]) <= 1e-7 * fmax(1, rgb[k]),
+                   "pixel %d,%d: got %.9g, expected %.9g", i % 96, i / 96, (double) final[k],
+                   rgb[k]);
+        lit += final[0] > 0;
+    }
+    ck_assert_int_gt(lit, 5000);
+    frame_free(&frame);
+    free(stage);
+}
+END_TEST
+
 START_TEST(test_memory_limit)
 {
     Stage *stage = stage_new();
@@ -393,209 +311,6 @@ START_TEST(test_trace_failure_ends_rendering)
 }
 END_TEST
 
-/* ---- random triangles against a ray caster -----------------------------------------------------
- */
-
-enum {
-    SOUP_TRIANGLES = 60,
-    WIDTH = 150,
-    HEIGHT = 100
-};
-
-typedef struct RandomSoup {
-    Stage *stage;
-    float position[9 * SOUP_TRIANGLES], normal[9 * SOUP_TRIANGLES];
-    uint32_t index[3 * SOUP_TRIANGLES];
-} RandomSoup;
-
-/* Two draws of one mesh each: the first half of the triangles, and the second (opaque if asked).
- * Corners anywhere around the camera, behind it too. */
-static RandomSoup *soup_new(uint64_t seed, bool opaque)
-{
-    RandomSoup *soup = calloc(1, sizeof *soup);
-    Random random = random_seed(seed);
-    for (int i = 0; i < 9 * SOUP_TRIANGLES; i++) {
-        bool is_z = i % 3 == 2;
-        soup->position[i] = (float)random_range(&random, is_z ? -3.5 : -4, is_z ? 0.5 : 4);
-        soup->normal[i] = (float)random_range(&random, -1, 1);
-    }
-    for (uint32_t i = 0; i < 3 * SOUP_TRIANGLES; i++)
-        soup->index[i] = i;
-    soup->stage = stage_new();
-    Stage *stage = soup->stage;
-    add_quad(stage, 2, 4, red);
-    add_quad(stage, 2, 4, opaque ? blue : green);
-    for (int i = 0; i < 2; i++) {
-        stage->meshes[i] = (Mesh){.vertex_count = 3 * SOUP_TRIANGLES,
-                                  .triangle_count = SOUP_TRIANGLES / 2,
-                                  .position = soup->position,
-                                  .normal = soup->normal,
-                                  .index = soup->index + i * 3 * (SOUP_TRIANGLES / 2)};
-        stage->materials[i].double_sided = true;
-    }
-    stage->scene.light_count = 2;
-    stage->lights[0] = (Light){.position = {1, 2, 0}, .color = {3, 2, 1}, .attenuation = {1, 0, 1}};
-    stage->lights[1] =
-        (Light){.position = {-2, 0, -4}, .color = {1, 2, 3}, .attenuation = {0, 1, 0}};
-    return soup;
-}
-
-static void soup_drop(RandomSoup *soup)
-{
-    free(soup->stage);
-    free(soup);
-}
-
-typedef struct Hit {
-    double depth; /* along −z, in view space */
-    uint32_t triangle;
-} Hit;
-
-/* Source: Möller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997.
- * The ray runs from 0 through (x, y, −1). */
-static bool cast_ray(const float *p, double x, double y, double *depth)
-{
-    double e1[3], e2[3];
-    for (int i = 0; i < 3; i++) {
-        e1[i] = (double)p[3 + i] - p[i];
-        e2[i] = (double)p[6 + i] - p[i];
-    }
-    const double d[3] = {x, y, -1}, t[3] = {-(double)p[0], -(double)p[1], -(double)p[2]};
-    const double h[3] = {d[1] * e2[2] - d[2] * e2[1], d[2] * e2[0] - d[0] * e2[2],
-                         d[0] * e2[1] - d[1] * e2[0]};
-    const double q[3] = {t[1] * e1[2] - t[2] * e1[1], t[2] * e1[0] - t[0] * e1[2],
-                         t[0] * e1[1] - t[1] * e1[0]};
-    double determinant = e1[0] * h[0] + e1[1] * h[1] + e1[2] * h[2];
-    double u = (t[0] * h[0] + t[1] * h[1] + t[2] * h[2]) / determinant;
-    double v = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / determinant;
-    *depth = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / determinant;
-    return u >= 0 && v >= 0 && u + v <= 1 && *depth >= 1 && *depth < 3;
-}
-
-/* All hits at a pixel, front to back. */
-static int cast_pixel(const RandomSoup *soup, int x, int y, Hit hits[SOUP_TRIANGLES])
-{
-    double ray_x = ((x + 0.5) / WIDTH * 2 - 1) * ((double)(float)((double)WIDTH / HEIGHT));
-    double ray_y = 1 - (y + 0.5) / HEIGHT * 2;
-    int count = 0;
-    for (uint32_t i = 0; i < SOUP_TRIANGLES; i++) {
-        Hit hit = {0, i};
-        if (!cast_ray(&soup->position[9 * i], ray_x, ray_y, &hit.depth))
-            continue;
-        int at = count++;
-        for (; at > 0 && hits[at - 1].depth > hit.depth; at--)
-            hits[at] = hits[at - 1];
-        hits[at] = hit;
-    }
-    return count;
-}
-
-/* Every triangle that only one side has at a pixel must be a counted coverage difference, and all
- * that both have must be in the same order. */
-START_TEST(test_ray_caster_agrees)
-{
-    RandomSoup *soup = soup_new((uint64_t)_i + 1, false);
-    const RenderDesc desc = {.width = WIDTH, .height = HEIGHT};
-    Layers layers = {.sink.put = layers_put};
-    Frame frame;
-    ck_assert_int_eq(truth_render(&soup->stage->scene, &desc, &layers.sink, &frame), RESULT_OK);
-    uint64_t differing = 0, fragments = 0;
-    for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
-        int x = pixel % WIDTH, y = pixel / WIDTH;
-        Hit hits[SOUP_TRIANGLES];
-        int count = cast_pixel(soup, x, y, hits), next = 0;
-        for (int step = 1; step <= LAYERS_MAX; step++) {
-            uint32_t id = layer_id(&layers, step, x, y);
-            if (id == UINT32_MAX)
-                break;
-            fragments++;
-            int at = next;
-            while (at < count && hits[at].triangle != id)
-                at++;
-            if (at == count) { /* not in the rest: either nowhere, or out of order */
-                for (int i = 0; i < next; i++)
-                    EXPECT(hits[i].triangle != id, "pixel %d,%d: order of triangle %u", x, y, id);
-                differing++;
-            } else {
-                differing += (uint64_t)(at - next);
-                next = at + 1;
-            }
-        }
-        differing += (uint64_t)(count - next);
-    }
-    ck_assert_uint_gt(fragments, 5000);
-    ck_assert_uint_eq(fragments, frame.layers.fragments);
-    ck_assert_uint_eq(differing, frame.layers.coverage_differs);
-    frame_free(&frame);
-    layers_free(&layers);
-    soup_drop(soup);
-}
-END_TEST
-
-static void check_equal(const Frame *a, const Frame *b)
-{
-    size_t pixels = (size_t)a->final.width * (size_t)a->final.height;
-    ck_assert_mem_eq(a->final.pixels, b->final.pixels, 16 * pixels);
-    ck_assert_mem_eq(a->display.pixels, b->display.pixels, 4 * pixels);
-    ck_assert_mem_eq(&a->layers, &b->layers, sizeof a->layers);
-}
-
-START_TEST(test_any_threads_and_order_same_bits)
-{
-    RandomSoup *soup = soup_new(77, true);
-    RenderDesc desc = {.width = 300, .height = 200, .threads = 1};
-    Layers one_layers = {.sink.put = layers_put};
-    Frame one, other;
-    ck_assert_int_eq(truth_render(&soup->stage->scene, &desc, &one_layers.sink, &one), RESULT_OK);
-    ck_assert_uint_gt(one.layers.fragments, 1000);
-    for (int threads = 2; threads <= 3; threads++) {
-        Layers layers = {.sink.put = layers_put};
-        desc.threads = threads;
-        ck_assert_int_eq(truth_render(&soup->stage->scene, &desc, &layers.sink, &other), RESULT_OK);
-        check_equal(&one, &other);
-        for (int step = 0; step <= LAYERS_MAX; step++) {
-            ck_assert((layers.id[step] != NULL) == (one_layers.id[step] != NULL));
-            if (layers.id[step])
-                ck_assert_mem_eq(layers.id[step], one_layers.id[step], 4 * 300 * 200);
-        }
-        layers_free(&layers);
-        frame_free(&other);
-    }
-    /* No two fragments tie here: the order of drawing must not matter. */
-    Instance *instances = soup->stage->instances;
-    Instance first = instances[0];
-    instances[0] = instances[1];
-    instances[1] = first;
-    ck_assert_int_eq(truth_render(&soup->stage->scene, &desc, NULL, &other), RESULT_OK);
-    check_equal(&one, &other);
-    frame_free(&other);
-    frame_free(&one);
-    layers_free(&one_layers);
-    soup_drop(soup);
-}
-END_TEST
-
-/* Anything finite: no failure, no NaN. */
-START_TEST(test_extreme_geometry)
-{
-    static const float values[] = {0,     1,      -1,   1e30f,  -1e30f, 1e-30f, -2, 1e4f,
-                                   -1e4f, 1e-42f, 0.5f, -1e10f, 1.5f,   -1.5f,  -3, 2};
-    Random random = random_seed((uint64_t)_i);
-    RandomSoup *soup = soup_new(1, _i % 2);
-    for (int i = 0; i < 9 * SOUP_TRIANGLES; i++) {
-        soup->position[i] = values[random_bits(&random) % 16];
-        soup->normal[i] = values[random_bits(&random) % 16];
-    }
-    const RenderDesc desc = {.width = 37, .height = 70, .depth_func = (DepthFunc)(_i % 2)};
-    Frame frame;
-    ck_assert_int_eq(truth_render(&soup->stage->scene, &desc, NULL, &frame), RESULT_OK);
-    for (int i = 0; i < 37 * 70 * 4; i++)
-        EXPECT(!isnan(((float *)frame.final.pixels)[i]), "pixel %d is not a number", i / 4);
-    frame_free(&frame);
-    soup_drop(soup);
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("truth");
@@ -609,11 +324,9 @@ int main(void)
     tcase_add_test(tests, test_alpha_extremes);
     tcase_add_test(tests, test_facing);
     tcase_add_test(tests, test_orientation);
+    tcase_add_test(tests, test_shading_place);
     tcase_add_test(tests, test_memory_limit);
     tcase_add_test(tests, test_trace_failure_ends_rendering);
-    tcase_add_loop_test(tests, test_ray_caster_agrees, 0, 6);
-    tcase_add_test(tests, test_any_threads_and_order_same_bits);
-    tcase_add_loop_test(tests, test_extreme_geometry, 0, 6);
     suite_add_tcase(suite, tests);
     return testing_run(suite);
 }

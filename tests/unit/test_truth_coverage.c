@@ -2,20 +2,13 @@
  * of coverage against each other. */
 #include "base/random.h"
 #include "ref/truth/coverage.h"
-#include "testing.h"
+#include "truth_stage.h"
 
 #include <math.h>
 
 enum {
     SIDE = 16
 };
-
-/* An assertion that costs nothing while it holds: check's own report to its runner each time. */
-#define EXPECT(condition, ...)                                                                     \
-    do {                                                                                           \
-        if (!(condition))                                                                          \
-            ck_abort_msg(__VA_ARGS__);                                                             \
-    } while (0)
 
 /* Adds to hits[y][x] (y up): 1 to the low half for snapped coverage, 1 << 16 for exact. Asserts on
  * the way that the certain verdicts are right. */

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "number/blend.h"
 #include "number/op.h"
+#include "ref/pipeline/fragment.h"
 #include "ref/pipeline/pass.h"
 #include "ref/pipeline/shade.h"
 
@@ -19,13 +20,13 @@
 
 typedef struct Peel {
     const Pass *pass;
-    GBuffer opaque, layer;  /* layer.depth is the current peel's */
-    Image previous_depth;   /* the other of the two depth buffers */
+    GBuffer opaque, layer; /* layer.depth is the current peel's */
+    Image previous_depth;  /* the other of the two depth buffers */
     Image accum;
-    uint32_t *fragments;    /* per pixel: transparent fragments in front of the opaque depth */
-    uint32_t *remaining;    /* of those, behind the last peel */
+    uint32_t *fragments; /* per pixel: transparent fragments in front of the opaque depth */
+    uint32_t *remaining; /* of those, behind the last peel */
     PassCounts *tile_counts;
-    int peel;               /* −1 during the opaque pass */
+    int peel; /* −1 during the opaque pass */
     Frame *frame;
 } Peel;
 
@@ -69,7 +70,7 @@ static void visit_fragment(void *context, const Setup *setup, int x, int y)
     *stored = key;
     ((uint32_t *)visit->target->primitive.pixels)[pixel] = visit->primitive->id;
     Texel texel;
-    pass_fragment(pass, setup, visit->primitive, x, y, &texel);
+    fragment_shade(pass, setup, visit->primitive, x, y, &texel);
     gbuffer_store(visit->target, x, pass->view.height - 1 - y, &texel);
 }
 
@@ -360,8 +361,8 @@ static Result allocate(Peel *state)
     const RenderDesc *desc = pass->desc;
     int width = pass->view.width, height = pass->view.height;
     size_t pixels = (size_t)width * (size_t)height;
-    Result result = gbuffer_create(width, height, desc->gbuffer, pass->depth_format,
-                                   &state->opaque);
+    Result result =
+        gbuffer_create(width, height, desc->gbuffer, pass->depth_format, &state->opaque);
     if (result == RESULT_OK)
         result = gbuffer_create(width, height, desc->gbuffer, pass->depth_format, &state->layer);
     if (result == RESULT_OK)

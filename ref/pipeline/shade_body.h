@@ -1,0 +1,130 @@
+/* The lighting pass of LANES pixels: frame/shading.h through number/lanes.h, one body for every
+ * width. With LANES 1 it is the definition. */
+#ifndef PEEL_REF_SHADE_BODY_H
+#define PEEL_REF_SHADE_BODY_H
+
+#include "frame/shading.h"
+#include "frame/view.h"
+#include "number/lanes.h"
+
+/* Fetched G-buffer values, one array entry per lane; alpha has passed the alpha test. */
+typedef struct ShadeBatch {
+    float normal[3][LANES], position[3][LANES], diffuse[4][LANES], material[3][LANES];
+    float source[4][LANES]; /* out: premultiplied colour and alpha */
+} ShadeBatch;
+
+/* What does not depend on the light. */
+typedef struct Surface {
+    Lanes normal[3], position[3], view[3];
+    Lanes a2, a2_minus_1;
+    Lanes k, one_minus_k;
+    Lanes geometry_view; /* Schlick-GGX towards the eye */
+    Lanes four_n_dot_v;
+    Lanes f0[3], one_minus_f0[3];
+    Lanes lambert[3];
+} Surface;
+
+/* v / |v|, guarded so that a zero vector stays zero. */
+static inline void shade_normalize(const Lanes v[3], Lanes out[3])
+{
+    Lanes scale = lanes_inversesqrt(lanes_max(lanes_dot3(v, v), lanes_all(SHADING_TINY)));
+    for (int i = 0; i < 3; i++)
+        out[i] = lanes_mul(v[i], scale);
+}
+
+static inline void shade_surface(const ShadeBatch *batch, Surface *out)
+{
+    Lanes one = lanes_all(1.0f), zero = lanes_all(0.0f);
+    Lanes to_eye[3];
+    for (int i = 0; i < 3; i++) {
+        out->normal[i] = lanes_load(batch->normal[i]);
+        out->position[i] = lanes_load(batch->position[i]);
+        to_eye[i] = LANES_NEG(out->position[i]);
+    }
+    shade_normalize(to_eye, out->view);
+
+    Lanes roughness =
+        lanes_min(lanes_max(lanes_load(batch->material[0]), lanes_all(SHADING_ROUGHNESS_MIN)), one);
+    Lanes metallic = lanes_load(batch->material[1]);
+    Lanes a = lanes_mul(roughness, roughness);
+    out->a2 = lanes_mul(a, a);
+    out->a2_minus_1 = lanes_sub(out->a2, one);
+    Lanes k1 = lanes_add(roughness, one);
+    out->k = lanes_mul(lanes_mul(k1, k1), lanes_all(0.125f));
+    out->one_minus_k = lanes_sub(one, out->k);
+    Lanes n_dot_v = lanes_max(lanes_dot3(out->normal, out->view), zero);
+    out->geometry_view =
+        lanes_div(n_dot_v, lanes_add(lanes_mul(n_dot_v, out->one_minus_k), out->k));
+    out->four_n_dot_v = lanes_mul(lanes_all(4.0f), n_dot_v);
+    for (int i = 0; i < 3; i++) {
+        Lanes diffuse = lanes_load(batch->diffuse[i]);
+        out->f0[i] = lanes_mix(lanes_all(0.04f), diffuse, metallic);
+        out->one_minus_f0[i] = lanes_sub(one, out->f0[i]);
+        out->lambert[i] =
+            lanes_div(lanes_mul(diffuse, lanes_sub(one, metallic)), lanes_all(SHADING_PI));
+    }
+}
+
+static inline void shade_light(const Surface *surface, const ViewLight *light, Lanes sum[3])
+{
+    Lanes one = lanes_all(1.0f), zero = lanes_all(0.0f);
+    Lanes to_light[3], direction[3], half_sum[3], half_vector[3];
+    for (int i = 0; i < 3; i++)
+        to_light[i] = lanes_sub(lanes_all(light->position[i]), surface->position[i]);
+    Lanes distance2 = lanes_max(lanes_dot3(to_light, to_light), lanes_all(SHADING_DISTANCE2_MIN));
+    Lanes distance = lanes_sqrt(distance2);
+    Lanes inverse_distance = lanes_div(one, distance);
+    for (int i = 0; i < 3; i++) {
+        direction[i] = lanes_mul(to_light[i], inverse_distance);
+        half_sum[i] = lanes_add(surface->view[i], direction[i]);
+    }
+    shade_normalize(half_sum, half_vector);
+
+    Lanes n_dot_l = lanes_max(lanes_dot3(surface->normal, direction), zero);
+    Lanes n_dot_h = lanes_max(lanes_dot3(surface->normal, half_vector), zero);
+    Lanes h_dot_v = lanes_max(lanes_dot3(half_vector, surface->view), zero);
+
+    Lanes denominator = lanes_add(lanes_mul(lanes_mul(n_dot_h, n_dot_h), surface->a2_minus_1), one);
+    Lanes distribution = lanes_div(
+        surface->a2, lanes_mul(lanes_mul(lanes_all(SHADING_PI), denominator), denominator));
+    Lanes geometry_light =
+        lanes_div(n_dot_l, lanes_add(lanes_mul(n_dot_l, surface->one_minus_k), surface->k));
+    /* clamp(x, 0, 1), in the order that gives 0 for −0 and below. */
+    Lanes x = lanes_min(lanes_max(lanes_sub(one, h_dot_v), zero), one);
+    Lanes x2 = lanes_mul(x, x);
+    Lanes x5 = lanes_mul(lanes_mul(x2, x2), x);
+    Lanes specular = lanes_div(
+        lanes_mul(distribution, lanes_mul(surface->geometry_view, geometry_light)),
+        lanes_add(lanes_mul(surface->four_n_dot_v, n_dot_l), lanes_all(SHADING_SPECULAR_BIAS)));
+    Lanes attenuation =
+        lanes_div(one, lanes_add(lanes_add(lanes_all(light->attenuation[0]),
+                                           lanes_mul(lanes_all(light->attenuation[1]), distance)),
+                                 lanes_mul(lanes_all(light->attenuation[2]), distance2)));
+    for (int i = 0; i < 3; i++) {
+        Lanes fresnel = lanes_add(surface->f0[i], lanes_mul(surface->one_minus_f0[i], x5));
+        Lanes reflected = lanes_add(lanes_mul(lanes_sub(one, fresnel), surface->lambert[i]),
+                                    lanes_mul(fresnel, specular));
+        Lanes radiance = lanes_mul(lanes_mul(lanes_all(light->color[i]), attenuation), n_dot_l);
+        sum[i] = lanes_add(sum[i], lanes_mul(reflected, radiance));
+    }
+}
+
+/* Fills batch->source. Flushing mode. */
+static inline void shade_batch(const View *view, ShadeBatch *batch)
+{
+    Surface surface;
+    shade_surface(batch, &surface);
+    Lanes sum[3] = {lanes_all(0.0f), lanes_all(0.0f), lanes_all(0.0f)};
+    for (size_t i = 0; i < view->light_count; i++)
+        shade_light(&surface, &view->lights[i], sum);
+    Lanes alpha = lanes_load(batch->diffuse[3]);
+    for (int i = 0; i < 3; i++) {
+        Lanes ambient =
+            lanes_mul(lanes_mul(lanes_all(view->ambient[i]), lanes_load(batch->diffuse[i])),
+                      lanes_load(batch->material[2]));
+        lanes_store(batch->source[i], lanes_mul(lanes_add(sum[i], ambient), alpha));
+    }
+    lanes_store(batch->source[3], alpha);
+}
+
+#endif

@@ -1,0 +1,172 @@
+#include "scene/gltf_assimp.h"
+
+#include "base/memory.h"
+#include "scene/gltf_file.h"
+
+#include <assimp/cfileio.h>
+#include <assimp/cimport.h>
+#include <assimp/metadata.h>
+#include <assimp/scene.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A file in memory with a position: all that Assimp ever reads. */
+typedef struct MemoryFile {
+    const unsigned char *bytes;
+    size_t count, position;
+    unsigned char *owned; /* NULL for the document itself */
+} MemoryFile;
+
+typedef struct Document {
+    const char *path;
+    unsigned char *bytes;
+    size_t count;
+} Document;
+
+static size_t file_read(struct aiFile *file, char *out, size_t size, size_t count)
+{
+    MemoryFile *memory = (MemoryFile *)file->UserData;
+    size_t left = memory->count - memory->position;
+    size_t items = size && count > left / size ? left / size : count;
+    if (size == 0)
+        return 0;
+    memcpy(out, memory->bytes + memory->position, items * size);
+    memory->position += items * size;
+    return items;
+}
+
+static size_t file_write_nothing(struct aiFile *file, const char *bytes, size_t size, size_t count)
+{
+    (void)file, (void)bytes, (void)size, (void)count;
+    return 0;
+}
+
+static size_t file_tell(struct aiFile *file)
+{
+    return ((MemoryFile *)file->UserData)->position;
+}
+
+static size_t file_size(struct aiFile *file)
+{
+    return ((MemoryFile *)file->UserData)->count;
+}
+
+static aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
+{
+    MemoryFile *memory = (MemoryFile *)file->UserData;
+    size_t base = origin == aiOrigin_SET   ? 0
+                  : origin == aiOrigin_CUR ? memory->position
+                                           : memory->count;
+    if (offset > memory->count - base)
+        return aiReturn_FAILURE;
+    memory->position = base + offset;
+    return aiReturn_SUCCESS;
+}
+
+static void file_flush(struct aiFile *file)
+{
+    (void)file;
+}
+
+static void close_file(struct aiFileIO *io, struct aiFile *file)
+{
+    (void)io;
+    if (!file)
+        return;
+    free(((MemoryFile *)file->UserData)->owned);
+    free(file->UserData);
+    free(file);
+}
+
+/* The reduced document under the file's own name; everything else is an external buffer. */
+static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
+{
+    const Document *document = (const Document *)io->UserData;
+    if (mode[0] != 'r')
+        return NULL;
+    struct aiFile *file = memory_array(1, sizeof *file);
+    MemoryFile *memory = memory_array(1, sizeof *memory);
+    if (!file || !memory) {
+        free(file);
+        free(memory);
+        return NULL;
+    }
+    if (strcmp(path, document->path) == 0) {
+        *memory = (MemoryFile){.bytes = document->bytes, .count = document->count};
+    } else if (gltf_file_read(path, &memory->owned, &memory->count) == RESULT_OK) {
+        memory->bytes = memory->owned;
+    } else {
+        free(file);
+        free(memory);
+        return NULL;
+    }
+    *file = (struct aiFile){file_read, file_write_nothing, file_tell,         file_size,
+                            file_seek, file_flush,         (aiUserData)memory};
+    return file;
+}
+
+/* The reduced document in the form that the file has: text, or binary with the same BIN chunk. */
+static Result serialize(const char *path, const GltfJson *json, Document *document)
+{
+    json_t *reduced = gltf_json_reduced(json);
+    char *text = json_dumps(reduced, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(reduced);
+    if (!text)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory for its JSON text", path);
+    if (gltf_file_kind(path) != 1) {
+        document->bytes = (unsigned char *)text;
+        document->count = strlen(text);
+        return RESULT_OK;
+    }
+    Result result = gltf_file_assemble(text, json->binary, json->binary_count, &document->bytes,
+                                       &document->count);
+    free(text);
+    return result;
+}
+
+/* Assimp's message may have several lines; ours has one. */
+static Result assimp_failure(const char *path)
+{
+    char message[512] = "";
+    strncat(message, aiGetErrorString(), sizeof message - 1);
+    message[strcspn(message, "\r\n")] = 0;
+    return result_fail(RESULT_BAD_INPUT, "%s: cannot import: %s", path,
+                       *message ? message : "no reason given");
+}
+
+/* Assimp guesses formats by content; nothing but its glTF 2.0 importer may have answered. */
+static bool is_gltf2(const struct aiScene *scene)
+{
+    struct aiString format = {0};
+    for (unsigned i = 0; scene->mMetaData && i < scene->mMetaData->mNumProperties; i++) {
+        const struct aiMetadataEntry *entry = &scene->mMetaData->mValues[i];
+        if (strcmp(scene->mMetaData->mKeys[i].data, "SourceAsset_Format") == 0 &&
+            entry->mType == AI_AISTRING)
+            memcpy(&format, entry->mData, sizeof format);
+    }
+    return strcmp(format.data, "glTF2 Importer") == 0;
+}
+
+Result gltf_assimp_import(const char *path, const GltfJson *json, const struct aiScene **out)
+{
+    Document document = {.path = path};
+    *out = NULL;
+    Result result = serialize(path, json, &document);
+    if (result)
+        return result;
+    /* No log stream is attached: Assimp then logs nowhere. */
+    struct aiFileIO io = {open_file, close_file, (aiUserData)&document};
+    *out = aiImportFileEx(path, 0, &io);
+    if (!*out)
+        result = assimp_failure(path);
+    else if (!is_gltf2(*out) || !(*out)->mRootNode)
+        result = result_fail(RESULT_BAD_INPUT, "%s: not read as glTF 2.0", path);
+    free(document.bytes);
+    return result;
+}
+
+void gltf_assimp_release(const struct aiScene *scene)
+{
+    if (scene)
+        aiReleaseImport(scene);
+}

@@ -1,0 +1,347 @@
+#include "scene/gltf_check.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+enum {
+    TYPE_INT8 = 5120,
+    TYPE_UINT8,
+    TYPE_INT16,
+    TYPE_UINT16,
+    TYPE_UINT32 = 5125,
+    TYPE_FLOAT
+};
+enum {
+    MODE_TRIANGLES = 4,
+    MODE_FAN = 6
+};
+
+static Result check_arrays(const GltfCheck *check)
+{
+    static const char *const keys[] = {"buffers", "bufferViews", "accessors", "meshes",    "nodes",
+                                       "scenes",  "materials",   "cameras",   "animations"};
+    for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+        const json_t *array = gltf_array(check, keys[k]), *element;
+        size_t i;
+        if (array && !json_is_array(array))
+            return result_fail(RESULT_BAD_INPUT, "%s: %s: expected an array", check->path, keys[k]);
+        json_array_foreach(array, i, element) if (!json_is_object(element)) return gltf_fail(
+            check, keys[k], i, "an object");
+    }
+    return RESULT_OK;
+}
+
+/* Extensions that must be understood: those that change only how a surface looks are warned of. */
+static Result check_extensions(const GltfCheck *check)
+{
+    static const char *const harmless[] = {"KHR_lights_punctual", "KHR_materials_", "KHR_texture_",
+                                           "EXT_texture_"};
+    const json_t *name;
+    size_t i;
+    json_array_foreach(gltf_array(check, "extensionsRequired"), i, name)
+    {
+        const char *text = json_string_value(name);
+        bool known = false;
+        for (size_t k = 0; text && k < sizeof harmless / sizeof harmless[0]; k++)
+            known = known || strncmp(text, harmless[k], strlen(harmless[k])) == 0;
+        if (!known)
+            return result_fail(RESULT_UNSUPPORTED,
+                               "%s: requires the extension %s, which is not modelled", check->path,
+                               text ? text : "?");
+    }
+    return RESULT_OK;
+}
+
+/* ---- buffers and accessors ---------------------------------------------------------------------
+ */
+
+static Result check_views(const GltfCheck *check)
+{
+    const json_t *element;
+    size_t i;
+    json_array_foreach(gltf_array(check, "buffers"), i, element)
+    {
+        const json_t *uri = json_object_get(element, "uri");
+        if (!gltf_required_index(element, "byteLength", SIZE_MAX))
+            return gltf_fail(check, "buffer", i, "a byteLength");
+        if (uri && !json_is_string(uri))
+            return gltf_fail(check, "buffer", i, "a string as its uri");
+        if (!uri &&
+            (i != 0 || gltf_json_index(element, "byteLength", 0) > check->json->binary_count))
+            return gltf_fail(check, "buffer", i,
+                             "a uri, or a binary chunk as long as its byteLength");
+    }
+    json_array_foreach(gltf_array(check, "bufferViews"), i, element)
+    {
+        if (!gltf_required_index(element, "buffer", gltf_count(check, "buffers")))
+            return gltf_fail(check, "bufferView", i, "a buffer that exists");
+        const json_t *buffer =
+            gltf_json_element(check->json, "buffers", gltf_json_index(element, "buffer", 0));
+        size_t room = gltf_json_index(buffer, "byteLength", 0);
+        if (!gltf_required_index(element, "byteLength", room + 1) ||
+            !gltf_valid_index(json_object_get(element, "byteOffset"),
+                              room - gltf_json_index(element, "byteLength", 0) + 1))
+            return gltf_fail(check, "bufferView", i, "a range within its buffer");
+        if (!gltf_valid_index(json_object_get(element, "byteStride"), 253))
+            return gltf_fail(check, "bufferView", i, "a byteStride of at most 252");
+    }
+    return RESULT_OK;
+}
+
+static size_t component_bytes(size_t type)
+{
+    static const unsigned char sizes[] = {1, 1, 2, 2, 0, 4, 4};
+    return type >= TYPE_INT8 && type <= TYPE_FLOAT ? sizes[type - TYPE_INT8] : 0;
+}
+
+/* Components of an accessor that geometry may use; 0 for the others. */
+static size_t component_count(const json_t *accessor)
+{
+    static const char *const shapes[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    const char *shape = json_string_value(json_object_get(accessor, "type"));
+    for (size_t i = 0; shape && i < sizeof shapes / sizeof shapes[0]; i++)
+        if (strcmp(shape, shapes[i]) == 0)
+            return i + 1;
+    return 0;
+}
+
+/* An accessor of the given shape, its data within its view. */
+static Result check_accessor(const GltfCheck *check, size_t index, size_t components)
+{
+    const json_t *accessor = gltf_json_element(check->json, "accessors", index);
+    size_t bytes = component_bytes(gltf_json_index(accessor, "componentType", 0)) * components;
+    size_t count = gltf_json_index(accessor, "count", 0);
+    if (!bytes || component_count(accessor) != components)
+        return gltf_fail(check, "accessor", index, "the type that its use asks for");
+    if (!gltf_required_index(accessor, "count", UINT32_MAX) || count == 0)
+        return gltf_fail(check, "accessor", index, "a count from 1 to 2^32 - 2");
+    if (json_object_get(accessor, "sparse"))
+        return result_fail(RESULT_UNSUPPORTED, "%s: accessor %zu: sparse, which is not modelled",
+                           check->path, index);
+    if (!gltf_required_index(accessor, "bufferView", gltf_count(check, "bufferViews")))
+        return gltf_fail(check, "accessor", index, "a bufferView that exists");
+    const json_t *view =
+        gltf_json_element(check->json, "bufferViews", gltf_json_index(accessor, "bufferView", 0));
+    size_t stride = gltf_json_index(view, "byteStride", 0), room, needed;
+    stride = stride ? stride : bytes;
+    room = gltf_json_index(view, "byteLength", 0);
+    needed = stride * (count - 1) + bytes;
+    if (stride < bytes || needed > room ||
+        !gltf_valid_index(json_object_get(accessor, "byteOffset"), room - needed + 1))
+        return gltf_fail(check, "accessor", index, "data within its bufferView");
+    return RESULT_OK;
+}
+
+/* ---- meshes ------------------------------------------------------------------------------------
+ */
+
+/* A vertex attribute of floats with as many elements as POSITION; absent is fine. */
+static Result check_attribute(const GltfCheck *check, size_t mesh, const json_t *attributes,
+                              const char *name, size_t components)
+{
+    const json_t *value = json_object_get(attributes, name);
+    if (!value)
+        return RESULT_OK;
+    if (!gltf_valid_index(value, gltf_count(check, "accessors")))
+        return gltf_fail(check, "mesh", mesh, "attributes whose accessors exist");
+    size_t index = (size_t)json_integer_value(value);
+    Result result = check_accessor(check, index, components);
+    if (result)
+        return result;
+    const json_t *accessor = gltf_json_element(check->json, "accessors", index);
+    const json_t *position =
+        gltf_json_element(check->json, "accessors", gltf_json_index(attributes, "POSITION", 0));
+    if (gltf_json_index(accessor, "componentType", 0) != TYPE_FLOAT)
+        return gltf_fail(check, "accessor", index, "floats for a vertex attribute");
+    if (gltf_json_index(accessor, "count", 0) != gltf_json_index(position, "count", 1))
+        return gltf_fail(check, "mesh", mesh, "the same count for all attributes");
+    return RESULT_OK;
+}
+
+/* Texture coordinates may also be integers; those are dropped, not refused. */
+static void drop_integer_uvs(const GltfCheck *check, json_t *attributes)
+{
+    const json_t *accessor = gltf_json_element(check->json, "accessors",
+                                               gltf_json_index(attributes, "TEXCOORD_0", SIZE_MAX));
+    if (accessor && gltf_json_index(accessor, "componentType", 0) != TYPE_FLOAT) {
+        gltf_note(check, NOTE_UVS);
+        json_object_del(attributes, "TEXCOORD_0");
+    }
+}
+
+static void note_attributes(const GltfCheck *check, const json_t *attributes)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)attributes, key, value)
+    {
+        if (strncmp(key, "COLOR_", 6) == 0)
+            gltf_note(check, NOTE_COLORS);
+        if (strncmp(key, "TEXCOORD_", 9) == 0 && strcmp(key, "TEXCOORD_0") != 0)
+            gltf_note(check, NOTE_UVS);
+    }
+}
+
+static Result check_indices(const GltfCheck *check, size_t mesh, const json_t *primitive)
+{
+    const json_t *attributes = json_object_get(primitive, "attributes");
+    const json_t *value = json_object_get(primitive, "indices");
+    size_t source =
+        gltf_json_index(value ? primitive : attributes, value ? "indices" : "POSITION", SIZE_MAX);
+    if (value) {
+        if (!gltf_valid_index(value, gltf_count(check, "accessors")))
+            return gltf_fail(check, "mesh", mesh, "indices whose accessor exists");
+        Result result = check_accessor(check, source, 1);
+        if (result)
+            return result;
+        size_t type = gltf_json_index(gltf_json_element(check->json, "accessors", source),
+                                      "componentType", 0);
+        if (type != TYPE_UINT8 && type != TYPE_UINT16 && type != TYPE_UINT32)
+            return gltf_fail(check, "accessor", source, "unsigned integers for indices");
+    }
+    size_t count = gltf_json_index(gltf_json_element(check->json, "accessors", source), "count", 0);
+    if (count < 3 ||
+        (gltf_json_index(primitive, "mode", MODE_TRIANGLES) == MODE_TRIANGLES && count % 3 != 0))
+        return gltf_fail(check, "mesh", mesh, "whole triangles in every primitive");
+    return RESULT_OK;
+}
+
+static Result check_primitive(const GltfCheck *check, size_t mesh, const json_t *primitive)
+{
+    json_t *attributes = json_object_get(primitive, "attributes");
+    if (!json_is_object(primitive) || !json_is_object(attributes) ||
+        !gltf_valid_index(json_object_get(primitive, "mode"), MODE_FAN + 1))
+        return gltf_fail(check, "mesh", mesh, "primitives with attributes and a mode up to 6");
+    if (!gltf_json_drawn(primitive)) {
+        gltf_note(check, NOTE_POINTS_LINES);
+        return RESULT_OK;
+    }
+    if (!json_object_get(attributes, "POSITION"))
+        return gltf_fail(check, "mesh", mesh, "a POSITION in every primitive");
+    if (!gltf_valid_index(json_object_get(primitive, "material"), gltf_count(check, "materials")))
+        return gltf_fail(check, "mesh", mesh, "materials that exist");
+    note_attributes(check, attributes);
+    drop_integer_uvs(check, attributes);
+    if (json_object_get(primitive, "targets"))
+        gltf_note(check, NOTE_MORPHS);
+    Result result = check_attribute(check, mesh, attributes, "POSITION", 3);
+    if (!result)
+        result = check_attribute(check, mesh, attributes, "NORMAL", 3);
+    if (!result)
+        result = check_attribute(check, mesh, attributes, "TEXCOORD_0", 2);
+    return result ? result : check_indices(check, mesh, primitive);
+}
+
+static Result check_meshes(const GltfCheck *check)
+{
+    const json_t *mesh, *primitive;
+    size_t i, k;
+    json_array_foreach(gltf_array(check, "meshes"), i, mesh)
+    {
+        const json_t *primitives = json_object_get(mesh, "primitives");
+        if (!json_is_array(primitives) || json_array_size(primitives) == 0)
+            return gltf_fail(check, "mesh", i, "at least one primitive");
+        json_array_foreach(primitives, k, primitive)
+        {
+            Result result = check_primitive(check, i, primitive);
+            if (result)
+                return result;
+        }
+    }
+    return RESULT_OK;
+}
+
+/* ---- materials -------------------------------------------------
+ */
+
+static bool positive(const json_t *numbers)
+{
+    const json_t *number;
+    size_t i;
+    json_array_foreach(numbers, i, number) if (json_number_value(number) > 0.0) return true;
+    return false;
+}
+
+static Result check_materials(const GltfCheck *check)
+{
+    const json_t *material;
+    size_t i;
+    json_array_foreach(gltf_array(check, "materials"), i, material)
+    {
+        const json_t *factors = json_object_get(material, "pbrMetallicRoughness");
+        if (!gltf_valid_numbers(json_object_get(factors, "baseColorFactor"), 4))
+            return gltf_fail(check, "material", i, "four numbers as its baseColorFactor");
+        if (json_object_get(material, "normalTexture") ||
+            json_object_get(material, "occlusionTexture") ||
+            json_object_get(material, "emissiveTexture") ||
+            json_object_get(factors, "baseColorTexture") ||
+            json_object_get(factors, "metallicRoughnessTexture"))
+            gltf_note(check, NOTE_TEXTURES);
+        if (positive(json_object_get(material, "emissiveFactor")))
+            gltf_note(check, NOTE_EMISSIVE);
+    }
+    return RESULT_OK;
+}
+
+/* ---- shared with gltf_graph ---- */
+
+Result gltf_fail(const GltfCheck *check, const char *what, size_t index, const char *expected)
+{
+    return result_fail(RESULT_BAD_INPUT, "%s: %s %zu: expected %s", check->path, what, index,
+                       expected);
+}
+
+const json_t *gltf_array(const GltfCheck *check, const char *key)
+{
+    return json_object_get(check->json->root, key);
+}
+
+size_t gltf_count(const GltfCheck *check, const char *key)
+{
+    return json_array_size(gltf_array(check, key));
+}
+
+bool gltf_valid_index(const json_t *value, size_t limit)
+{
+    return !value || (json_is_integer(value) && json_integer_value(value) >= 0 &&
+                      (size_t)json_integer_value(value) < limit);
+}
+
+bool gltf_required_index(const json_t *object, const char *key, size_t limit)
+{
+    const json_t *value = json_object_get(object, key);
+    return value && gltf_valid_index(value, limit);
+}
+
+bool gltf_valid_numbers(const json_t *value, size_t count)
+{
+    const json_t *element;
+    size_t i;
+    if (!value)
+        return true;
+    if (!json_is_array(value) || json_array_size(value) != count)
+        return false;
+    json_array_foreach(value, i, element) if (!json_is_number(element)) return false;
+    return true;
+}
+
+void gltf_note(const GltfCheck *check, GltfNote which)
+{
+    check->json->notes |= 1u << which;
+}
+
+Result gltf_check(const char *path, GltfJson *json)
+{
+    GltfCheck check = {path, json};
+    Result result = check_arrays(&check);
+    if (!result)
+        result = check_extensions(&check);
+    if (!result)
+        result = check_views(&check);
+    if (!result)
+        result = check_meshes(&check);
+    if (!result)
+        result = check_materials(&check);
+    return result ? result : gltf_graph_check(&check);
+}

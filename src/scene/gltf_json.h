@@ -1,0 +1,67 @@
+/* The JSON of a glTF 2.0 file: checked, and reduced to what Peel models.
+ *
+ * Assimp 5.2.5 trusts its input in places (a skin without matrices, a line loop without a valid
+ * index and a nested graph crash or hang it), drops triangles with bad indices behind a log line,
+ * and loses what its scene has no place for (no zfar, which node holds which light). So it is
+ * given only geometry, materials and nodes, after they are checked here; the rest is read here.
+ *
+ * Source: glTF 2.0 specification, chapters 3 to 5; KHR_lights_punctual. */
+#ifndef PEEL_SCENE_GLTF_JSON_H
+#define PEEL_SCENE_GLTF_JSON_H
+
+#include "base/result.h"
+
+#include <jansson.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* What a file may have and Peel does not model; a bit each. */
+typedef enum GltfNote {
+    NOTE_TEXTURES = 0,
+    NOTE_EMISSIVE,
+    NOTE_COLORS,
+    NOTE_UVS,
+    NOTE_POINTS_LINES,
+    NOTE_MORPHS,
+    NOTE_SKINS,
+    NOTE_ANIMATIONS,
+    NOTE_ORTHOGRAPHIC,
+    NOTE_DIRECTIONAL,
+    NOTE_SPOT,
+    NOTE_RANGE,
+    NOTE_SCENES,
+    NOTE_COUNT
+} GltfNote;
+
+typedef struct GltfJson {
+    json_t *root;
+    size_t scene;          /* index of the scene to draw */
+    unsigned char *binary; /* the BIN chunk, in `file`; NULL if there is none */
+    size_t binary_count;
+    unsigned char *file;
+    uint32_t notes; /* 1 << GltfNote */
+} GltfJson;
+
+/* Reads and checks a file: every reference and extent that geometry and nodes rest on, nodes form
+ * a tree. BAD_INPUT, IO, NO_MEMORY, UNSUPPORTED (version 1, a required extension that changes the
+ * geometry); *out is then empty. Free with gltf_json_free. */
+Result gltf_json_read(const char *path, GltfJson *out);
+void gltf_json_free(GltfJson *json);
+
+/* A new document with nothing but triangles, materials' factors and nodes; NULL without memory.
+ * The indices of nodes, meshes and materials are kept. */
+json_t *gltf_json_reduced(const GltfJson *json);
+
+/* One warning that names everything noted, extensions included; silent when there is nothing. */
+void gltf_json_warn(const GltfJson *json, const char *path);
+
+/* Whether a primitive is drawn: triangles, strips and fans. */
+bool gltf_json_drawn(const json_t *primitive);
+
+/* The element of the top-level array `key`; NULL when there is none. */
+json_t *gltf_json_element(const GltfJson *json, const char *key, size_t index);
+
+/* A checked non-negative integer member, or fallback. */
+size_t gltf_json_index(const json_t *object, const char *key, size_t fallback);
+
+#endif
