@@ -7,7 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { WINDOW_PIXELS = 16 }; /* the window that OSMesa insists on; nothing is drawn to it */
+enum {
+    WINDOW_PIXELS = 16
+}; /* the window that OSMesa insists on; nothing is drawn to it */
 
 struct Context {
     OSMesaContext handle;
@@ -91,9 +93,8 @@ static Result start(Context *context)
                                      6,
                                      0};
     context->handle = OSMesaCreateContextAttribs(attributes, NULL);
-    if (!context->handle ||
-        !OSMesaMakeCurrent(context->handle, context->window, GL_UNSIGNED_BYTE, WINDOW_PIXELS,
-                           WINDOW_PIXELS))
+    if (!context->handle || !OSMesaMakeCurrent(context->handle, context->window, GL_UNSIGNED_BYTE,
+                                               WINDOW_PIXELS, WINDOW_PIXELS))
         return result_fail(RESULT_NO_GL, "OSMesa: cannot make an OpenGL 4.6 core context");
     Result result = api_load(lookup);
     if (result == RESULT_OK)

@@ -8,11 +8,11 @@ typedef struct Context Context;
 
 /* Limits the renderer depends on. */
 typedef struct ContextLimits {
-    int texture_size;   /* pixels a side */
-    int viewport[2];    /* pixels */
+    int texture_size; /* pixels a side */
+    int viewport[2];  /* pixels */
     int draw_buffers;
-    int uniform_block;  /* bytes */
-    int storage_block;  /* bytes */
+    int uniform_block; /* bytes */
+    int storage_block; /* bytes */
 } ContextLimits;
 
 /* Opens a context, loads gl and reports driver errors to it. threads > 0 asks llvmpipe for that

@@ -5,7 +5,9 @@
 
 #include <stdio.h>
 
-enum { SIDE = 16 };
+enum {
+    SIDE = 16
+};
 
 /* Window depths at (16, 0), (0, 0) and (0, 16): multiples of 2^-24, so that the way to clip space
  * and back is exact and only the interpolation can tell the modes apart. It falls steeply towards
@@ -33,7 +35,8 @@ static Result render(Context *context, float depth[SIDE * SIDE])
              2.0 * (double)depth_window[0] - 1.0, 2.0 * (double)depth_window[1] - 1.0,
              2.0 * (double)depth_window[2] - 1.0);
     GLuint program, texture, framebuffer, vertex_array;
-    Result result = program_build("arithmetic", defines, shader_fuses_vert, shader_fuses_frag, &program);
+    Result result =
+        program_build("arithmetic", defines, shader_fuses_vert, shader_fuses_frag, &program);
     if (result != RESULT_OK)
         return result;
     gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);

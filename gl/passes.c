@@ -15,7 +15,10 @@ enum {
     UNIFORM_FLIPPED,
 };
 
-enum { UNIFORM_AMBIENT = 0, UNIFORM_BACKGROUND = 0 };
+enum {
+    UNIFORM_AMBIENT = 0,
+    UNIFORM_BACKGROUND = 0
+};
 
 static Result build_geometry(const RenderDesc *desc, GeometryPass pass, GLuint *out)
 {
@@ -65,8 +68,8 @@ static void set_constants(Passes *passes)
     gl.BindVertexArray(passes->meshes.vertex_array);
 }
 
-Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc,
-                     const View *view, Passes *out)
+Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc, const View *view,
+                     Passes *out)
 {
     *out = (Passes){.context = context, .scene = scene, .desc = desc, .view = view};
     Result result = targets_create(context, desc, &out->targets);

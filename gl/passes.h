@@ -29,8 +29,8 @@ typedef struct Passes {
 
 /* Uploads the scene and builds programs and buffers; scene, desc and view must outlive *out. On
  * failure *out is empty. */
-Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc,
-                     const View *view, Passes *out);
+Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc, const View *view,
+                     Passes *out);
 void passes_destroy(Passes *passes);
 
 /* Clears the opaque G-buffer and the accumulation and draws the opaque list. */

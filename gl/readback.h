@@ -5,7 +5,10 @@
 #include "frame/trace.h"
 #include "targets.h"
 
-typedef enum ReadbackRows { READBACK_TOP_DOWN = 0, READBACK_BOTTOM_UP } ReadbackRows;
+typedef enum ReadbackRows {
+    READBACK_TOP_DOWN = 0,
+    READBACK_BOTTOM_UP
+} ReadbackRows;
 
 /* Colour attachment `attachment` of framebuffer, whose format is `format`. pixels: room for
  * width·height pixels of it, tightly packed. */

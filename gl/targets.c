@@ -7,9 +7,12 @@
 #include <string.h>
 
 static const GLenum internal_formats[FORMAT_COUNT] = {
-    [FORMAT_RGBA32F] = GL_RGBA32F, [FORMAT_RGBA16F] = GL_RGBA16F,
-    [FORMAT_RGBA16] = GL_RGBA16,   [FORMAT_RGBA8] = GL_RGBA8,
-    [FORMAT_D32F] = GL_DEPTH_COMPONENT32F, [FORMAT_D24] = GL_DEPTH_COMPONENT24,
+    [FORMAT_RGBA32F] = GL_RGBA32F,
+    [FORMAT_RGBA16F] = GL_RGBA16F,
+    [FORMAT_RGBA16] = GL_RGBA16,
+    [FORMAT_RGBA8] = GL_RGBA8,
+    [FORMAT_D32F] = GL_DEPTH_COMPONENT32F,
+    [FORMAT_D24] = GL_DEPTH_COMPONENT24,
     [FORMAT_R32UI] = GL_R32UI,
 };
 
@@ -45,10 +48,10 @@ static size_t count_bytes(const RenderDesc *desc, const Targets *targets)
 static Result check_limits(const Context *context, const RenderDesc *desc, size_t bytes)
 {
     const ContextLimits *limits = context_limits(context);
-    int width = limits->viewport[0] < limits->texture_size ? limits->viewport[0]
-                                                           : limits->texture_size;
-    int height = limits->viewport[1] < limits->texture_size ? limits->viewport[1]
-                                                            : limits->texture_size;
+    int width =
+        limits->viewport[0] < limits->texture_size ? limits->viewport[0] : limits->texture_size;
+    int height =
+        limits->viewport[1] < limits->texture_size ? limits->viewport[1] : limits->texture_size;
     if (desc->width > width || desc->height > height)
         return result_fail(RESULT_BAD_INPUT, "size %dx%d: the OpenGL driver allows %dx%d at most",
                            desc->width, desc->height, width, height);

@@ -8,7 +8,13 @@
 #include "context.h"
 #include "frame/render_desc.h"
 
-enum { GBUFFER_NORMAL, GBUFFER_POSITION, GBUFFER_DIFFUSE, GBUFFER_MATERIAL, GBUFFER_TARGETS };
+enum {
+    GBUFFER_NORMAL,
+    GBUFFER_POSITION,
+    GBUFFER_DIFFUSE,
+    GBUFFER_MATERIAL,
+    GBUFFER_TARGETS
+};
 
 typedef struct Targets {
     int width, height;
@@ -19,7 +25,7 @@ typedef struct Targets {
     GLuint peel_depth[2], peel_color[GBUFFER_TARGETS];
     GLuint accum, final, display;
     GLuint opaque_buffer, peel_buffer[2], plain_buffer, resolve_buffer; /* framebuffers */
-    size_t bytes; /* of the textures */
+    size_t bytes;                                                       /* of the textures */
 } Targets;
 
 /* Makes all of it. BAD_INPUT when desc's size passes a limit of the driver's, NO_MEMORY when it

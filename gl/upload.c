@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LIGHT_FLOATS = 12 };
+enum {
+    LIGHT_FLOATS = 12
+};
 
 /* Sums the meshes and fills their ranges. */
 static Result lay_out(const Scene *scene, Meshes *out, size_t *vertex_count, size_t *index_count)
@@ -45,10 +47,9 @@ static void fill_buffers(const Scene *scene, const Meshes *meshes, size_t vertex
                                   mesh->normal);
         }
         if (range->index_count > 0)
-            gl.NamedBufferSubData(meshes->indices,
-                                  (GLintptr)range->first_index * (GLintptr)sizeof(uint32_t),
-                                  (GLsizeiptr)range->index_count * (GLsizeiptr)sizeof(uint32_t),
-                                  mesh->index);
+            gl.NamedBufferSubData(
+                meshes->indices, (GLintptr)range->first_index * (GLintptr)sizeof(uint32_t),
+                (GLsizeiptr)range->index_count * (GLsizeiptr)sizeof(uint32_t), mesh->index);
     }
 }
 

@@ -117,8 +117,8 @@ static Result run(Passes *passes, TraceSink *trace, Scratch *scratch, Frame *out
     const Targets *targets = &passes->targets;
     Result result = passes_opaque_geometry(passes);
     if (result == RESULT_OK && trace)
-        result = readback_trace_gbuffer(targets, targets->opaque_buffer, -1, trace,
-                                        scratch->pixels);
+        result =
+            readback_trace_gbuffer(targets, targets->opaque_buffer, -1, trace, scratch->pixels);
     if (result == RESULT_OK)
         result = run_peels(passes, trace, scratch, out);
     if (result != RESULT_OK)

@@ -21,8 +21,7 @@ typedef struct Raster {
     Coverage coverage;
 } Raster;
 
-/* ---- order ------------------------------------------------------------------------------------
- */
+/* ---- order ---------------------------------------------------------------------------------- */
 
 static bool in_front(const Fragment *a, const Fragment *b, DepthFunc func)
 {
@@ -85,8 +84,7 @@ static Result sort_list(TileFragments *fragments, DepthFunc func)
     return RESULT_OK;
 }
 
-/* ---- collecting -------------------------------------------------------------------------------
- */
+/* ---- collecting ----------------------------------------------------------------------------- */
 
 static Result append(TileFragments *fragments, Fragment fragment)
 {

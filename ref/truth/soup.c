@@ -27,8 +27,7 @@ Result soup_check_memory(size_t needed, size_t limit)
                        limit);
 }
 
-/* ---- draws ------------------------------------------------------------------------------------
- */
+/* ---- draws ---------------------------------------------------------------------------------- */
 
 static Result collect_draws(const Scene *scene, const View *view, size_t max_bytes, Soup *soup)
 {
@@ -93,8 +92,7 @@ void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3]
         out[i] = &soup->vertices[draw->first_vertex + index[i]];
 }
 
-/* ---- vertices ---------------------------------------------------------------------------------
- */
+/* ---- vertices ------------------------------------------------------------------------------- */
 
 static SoupVertex transform(const View *view, const Draw *draw, const float *position,
                             const float *normal)
@@ -137,8 +135,7 @@ static Result vertex_task(void *context, uint32_t index, int worker)
     return RESULT_OK;
 }
 
-/* ---- tiles ------------------------------------------------------------------------------------
- */
+/* ---- tiles ---------------------------------------------------------------------------------- */
 
 static TileRange tile_range(const Soup *soup, uint32_t triangle)
 {

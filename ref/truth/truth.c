@@ -31,8 +31,7 @@ typedef struct Render {
     Frame *frame;
 } Render;
 
-/* ---- shading and compositing ------------------------------------------------------------------
- */
+/* ---- shading and compositing ---------------------------------------------------------------- */
 
 static void shade_fragment(const Render *render, const Fragment *fragment, int x, int y,
                            double rgb[3])
@@ -107,8 +106,7 @@ static void draw_tile(const Render *render, const TileFragments *tile)
     }
 }
 
-/* ---- trace ------------------------------------------------------------------------------------
- */
+/* ---- trace ---------------------------------------------------------------------------------- */
 
 static Result put_layer(Render *render, const TileFragments *tile, const char *name, int step,
                         const uint32_t *pixels)
@@ -155,8 +153,7 @@ static Result trace_tile(Render *render, WorkerState *worker)
     return result;
 }
 
-/* ---- the frame --------------------------------------------------------------------------------
- */
+/* ---- the frame ------------------------------------------------------------------------------ */
 
 static Result tile_task(void *context, uint32_t index, int worker_index)
 {

@@ -7,7 +7,7 @@
  * passes, depth, accum, gbuffer, peel_test, opaque_blend and unfused change nothing.
  *
  * It does not resolve depths closer than double precision: surfaces that coincide only in exact
- * arithmetic, not in double, come in the order of their rounding (near 1e-16 of window depth).
+ * arithmetic, not in double, come in the order of their rounding (exact.h states its size).
  * Source: Carpenter, "The A-buffer, an Antialiased Hidden Surface Method", SIGGRAPH 1984. */
 #ifndef PEEL_REF_TRUTH_H
 #define PEEL_REF_TRUTH_H

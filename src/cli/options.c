@@ -38,15 +38,19 @@ int options_fail(Result result)
 int options_parse(const struct argp *argp, int argc, char **argv, void *input)
 {
     int index = 0;
-    /* getopt would print two lines of its own. */
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--help") == 0) {
+            argp_help(argp, stdout, ARGP_HELP_STD_HELP & ~ARGP_HELP_EXIT_OK, argv[0]);
+            exit(EXIT_AGREE);
+        }
+    /* getopt would print two lines of its own; argp is then silent about --help, too. */
     error_t error = argp_parse(argp, argc, argv, ARGP_NO_ERRS, &index, input);
     if (error == 0)
         return 0;
     if (!reported) {
         const char *word = index > 0 && index <= argc ? argv[index - 1] : argv[argc - 1];
-        options_error("%s: '%s' is no option or argument of this command, or lacks its value; "
-                      "see '%s --help'",
-                      argv[0], word, argv[0]);
+        options_error("'%s' is no option or argument here, or lacks its value; see '%s --help'",
+                      word, argv[0]);
     }
     return EXIT_BAD_INPUT;
 }
@@ -140,6 +144,9 @@ enum {
     KEY_METHOD,
     KEY_PASSES,
     KEY_PROFILE,
+    KEY_CULL,
+    KEY_NORMALS,
+    KEY_DEPTH_FUNC,
     KEY_FMA,
     KEY_SIMD,
     KEY_THREADS,
@@ -159,6 +166,13 @@ static const struct argp_option render_options[] = {
      "At most N peels; auto (default) until a peel yields no fragment", 1},
     {"profile", KEY_PROFILE, "NAME", 0,
      "default, or seed: the number formats and choices of the original program", 1},
+    {"cull", KEY_CULL, "MODE", 0,
+     "Back faces left out: gltf (default: of single-sided materials), seed (of opaque ones), none",
+     1},
+    {"normals", KEY_NORMALS, "MODE", 0,
+     "On back faces: faced (default: turned to the viewer) or kept", 1},
+    {"depth-func", KEY_DEPTH_FUNC, "FUNC", 0,
+     "less (default: of equal depths the first drawn stays) or lequal (the last)", 1},
     {"fma", KEY_FMA, "on|off", 0,
      "Fused multiply-add in fixed-function arithmetic (default as the GL driver does)", 1},
     {"simd", KEY_SIMD, "NAME", 0,
@@ -180,30 +194,21 @@ static error_t parse_passes(const char *text, RenderDesc *desc)
     return 0;
 }
 
-static error_t parse_profile(const char *text, RenderOptions *options)
+/* The index of text among the names, which are listed in the message when it is none of them. */
+static error_t parse_choice(const char *option, const char *text, const char *const names[],
+                            int count, int *out)
 {
-    options->seed_profile = strcmp(text, "seed") == 0;
-    if (!options->seed_profile && strcmp(text, "default") != 0)
-        return options_error("--profile %s: expected default or seed", text);
-    return 0;
-}
-
-static error_t parse_fma(const char *text, RenderOptions *options)
-{
-    options->fma = strcmp(text, "on") == 0 ? FMA_ON : FMA_OFF;
-    if (options->fma == FMA_OFF && strcmp(text, "off") != 0)
-        return options_error("--fma %s: expected on or off", text);
-    return 0;
-}
-
-static error_t parse_simd(const char *text, RenderDesc *desc)
-{
-    for (SimdChoice simd = SIMD_AUTO; simd < SIMD_COUNT; simd++)
-        if (strcmp(text, simd_name(simd)) == 0) {
-            desc->simd = simd;
+    char expected[128] = "";
+    for (int i = 0; i < count; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            *out = i;
             return 0;
         }
-    return options_error("--simd %s: expected auto, scalar, sse2, avx2 or avx512", text);
+        size_t length = strlen(expected);
+        const char *separator = i == 0 ? "" : i == count - 1 ? " or " : ", ";
+        snprintf(expected + length, sizeof expected - length, "%s%s", separator, names[i]);
+    }
+    return options_error("%s %s: expected %s", option, text, expected);
 }
 
 static error_t parse_method(const char *text, RenderDesc *desc)
@@ -220,6 +225,50 @@ static error_t parse_lights(const char *text, RenderDesc *desc)
     error_t error = parse_count("--lights", text, 0, 1 << 20, &desc->lights);
     if (desc->lights == 0)
         desc->lights = -1; /* none: 0 means all in a RenderDesc */
+    return error;
+}
+
+/* Options that choose one of a few names. */
+static error_t parse_named(int key, const char *argument, RenderOptions *options)
+{
+    static const char *const profiles[] = {"default", "seed"};
+    static const char *const fma[] = {"on", "off"};
+    static const char *const culls[] = {"gltf", "seed", "none"};
+    static const char *const normals[] = {"faced", "kept"};
+    static const char *const functions[] = {"less", "lequal"};
+    const char *simds[SIMD_COUNT];
+    for (int i = 0; i < SIMD_COUNT; i++)
+        simds[i] = simd_name((SimdChoice)i);
+    int choice = 0;
+    error_t error = 0;
+    switch (key) {
+    case KEY_PROFILE:
+        error = parse_choice("--profile", argument, profiles, 2, &choice);
+        options->seed_profile = choice == 1;
+        break;
+    case KEY_FMA:
+        error = parse_choice("--fma", argument, fma, 2, &choice);
+        options->fma = choice == 0 ? FMA_ON : FMA_OFF;
+        break;
+    case KEY_CULL:
+        error = parse_choice("--cull", argument, culls, 3, &choice);
+        options->cull = choice;
+        break;
+    case KEY_NORMALS:
+        error = parse_choice("--normals", argument, normals, 2, &choice);
+        options->normals = choice;
+        break;
+    case KEY_DEPTH_FUNC:
+        error = parse_choice("--depth-func", argument, functions, 2, &choice);
+        options->depth_func = choice;
+        break;
+    case KEY_SIMD:
+        error = parse_choice("--simd", argument, simds, SIMD_COUNT, &choice);
+        options->desc.simd = (SimdChoice)choice;
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
     return error;
 }
 
@@ -246,12 +295,6 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         return parse_method(argument, desc);
     case KEY_PASSES:
         return parse_passes(argument, desc);
-    case KEY_PROFILE:
-        return parse_profile(argument, options);
-    case KEY_FMA:
-        return parse_fma(argument, options);
-    case KEY_SIMD:
-        return parse_simd(argument, desc);
     case KEY_THREADS:
         return parse_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:
@@ -268,7 +311,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
                                  "built-in scene");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_named(key, argument, options);
     }
 }
 
@@ -277,7 +320,8 @@ const struct argp options_render_argp = {render_options, parse_render, NULL, NUL
 
 RenderOptions options_default(void)
 {
-    return (RenderOptions){.desc = {.width = 1280, .height = 720}};
+    return (RenderOptions){
+        .desc = {.width = 1280, .height = 720}, .cull = -1, .normals = -1, .depth_func = -1};
 }
 
 /* ---- the scene ---- */
@@ -324,6 +368,12 @@ Result options_load_scene(RenderOptions *options, Scene *out)
         out->background[i] = (float)options->background[i];
     if (options->seed_profile)
         render_desc_seed_profile(&options->desc);
+    if (options->cull >= 0)
+        options->desc.cull = (CullMode)options->cull;
+    if (options->normals >= 0)
+        options->desc.normals = (NormalMode)options->normals;
+    if (options->depth_func >= 0)
+        options->desc.depth_func = (DepthFunc)options->depth_func;
     options->desc.unfused = options->fma == FMA_OFF;
     /* Mesa reads it at its first call, once per process: hides FMA (and AVX) from its compiler. */
     if (options->fma == FMA_OFF)

@@ -27,6 +27,7 @@ typedef struct RenderOptions {
     bool has_opacity, has_background, seed_profile;
     double opacity, background[3];
     FmaChoice fma;
+    int cull, normals, depth_func; /* −1: as the profile has it, else an enum of RenderDesc */
 } RenderOptions;
 
 /* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */
@@ -35,8 +36,8 @@ extern const struct argp options_render_argp;
 /* The defaults of the command line: 1280×720. */
 RenderOptions options_default(void);
 
-/* Parses a command's line. Returns 0, or EXIT_BAD_INPUT after a one-line message; --help and
- * --version end the program with 0. */
+/* Parses a command's line. Returns 0, or EXIT_BAD_INPUT after a one-line message; --help ends the
+ * program with 0. */
 int options_parse(const struct argp *argp, int argc, char **argv, void *input);
 
 /* For parsers: one line on stderr, and the error code that options_parse turns into exit 4. */

@@ -124,7 +124,7 @@ static inline float op_div(float a, float b)
     a = op_flush(a);
     b = op_flush(b);
     if (fabs((double)a) < fabs((double)b) * OP_TINY) /* exact: 24 + 25 bits */
-        return isinf(b) && isinf(a) ? a / b : copysignf(0.0f, a) * copysignf(1.0f, b);
+        return copysignf(0.0f, a) * copysignf(1.0f, b);
     return a / b;
 }
 static inline float op_sqrt(float a)
@@ -244,8 +244,10 @@ static inline int32_t op_round_to_int(float x)
 }
 
 /* exp2, log2 and pow: llvmpipe's polynomials (its lp_bld_arit.c), coefficients as measured.
- * Error against the true value: exp2 1.6e-7 relative, log2 4e-7 absolute near 1; neither is
- * correctly rounded and must not be "improved". NaN is kept. */
+ * Maximum error, fused or not: exp2 2.7e-7 relative (2.62e-7 at 0x1.15a38p-4, unfused); log2
+ * 2.2e-7 absolute for x in [1, 2) (2.11e-7 at 0x1.fcb1aep+0); pow(x, 1/2.2) 4.6e-7 relative for x
+ * in [2^-20, 1] (4.56e-7 at 0x1.0b8p-11). None is correctly rounded and none must be "improved".
+ * NaN is kept. */
 static inline float op_exp2(bool fused, float x)
 {
     if (x != x)

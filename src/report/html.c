@@ -160,7 +160,7 @@ static void put_differences(FileWriter *page, const Threeway *report)
         const FinalMetrics *final = &pair->final;
         summary_count(final->differing, differing);
         summary_real(final->max_abs, greatest);
-        put_picture(page, &(Picture){.shown = pictures_preview(pair, small),
+        put_picture(page, &(Picture){.shown = pictures_preview(pair, block, small),
                                      .linked = pictures_difference(pair, name),
                                      .width = (image->width + block - 1) / block,
                                      .height = (image->height + block - 1) / block});

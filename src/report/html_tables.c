@@ -4,6 +4,11 @@
 
 #include <string.h>
 
+/* Up to so many buffers have a row each; the page has them all further down. */
+enum {
+    UNFOLDED = 24
+};
+
 void html_text(FileWriter *page, const char *text)
 {
     for (const char *c = text; *c; c++) {
@@ -123,7 +128,7 @@ static void put_buffers(FileWriter *page, const Threeway *report)
                             "<p>Every value that ref and gl store on the way to the image, "
                             "compared by its bits.</p>\n");
     open_table(page, "ref against gl", buffer_columns, 8);
-    for (; summary_row(pair, &cursor, &row); rows++)
+    for (; summary_row(pair, UNFOLDED, &cursor, &row); rows++)
         put_buffer_row(page, &row);
     file_writer_print(page,
                       "</tbody>\n<tfoot><tr><th scope=\"row\">all</th><td>%zu</td><td>%s</td>"

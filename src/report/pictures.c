@@ -28,8 +28,10 @@ const char *pictures_difference(const PairReport *pair, char out[PICTURES_NAME])
     return out;
 }
 
-const char *pictures_preview(const PairReport *pair, char out[PICTURES_NAME])
+const char *pictures_preview(const PairReport *pair, int block, char out[PICTURES_NAME])
 {
+    if (block == 1)
+        return pictures_difference(pair, out);
     snprintf(out, PICTURES_NAME, "difference-%s-%s-small.png", threeway_renderer_name(pair->a),
              threeway_renderer_name(pair->b));
     return out;
@@ -122,10 +124,11 @@ static Result write_difference(const Threeway *report, const PairReport *pair, c
     Image image;
     Result made = heatmap_image(a, b, &image);
     Result result = write_made(made, &image, dir, pictures_difference(pair, name));
-    if (result != RESULT_OK)
+    int block = pictures_block(report);
+    if (result != RESULT_OK || block == 1)
         return result;
-    made = heatmap_reduced(a, b, pictures_block(report), &image);
-    return write_made(made, &image, dir, pictures_preview(pair, name));
+    made = heatmap_reduced(a, b, block, &image);
+    return write_made(made, &image, dir, pictures_preview(pair, block, name));
 }
 
 Result pictures_write(const Threeway *report, const char *dir)

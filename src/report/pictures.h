@@ -11,8 +11,8 @@ enum {
 /* Names inside the report's folder. */
 const char *pictures_final(int renderer, char out[PICTURES_NAME]); /* "ref.png" */
 const char *pictures_difference(const PairReport *pair, char out[PICTURES_NAME]);
-/* The difference as the page shows it: each pixel the greatest of pictures_block()² pixels. */
-const char *pictures_preview(const PairReport *pair, char out[PICTURES_NAME]);
+/* The difference as the page shows it: each pixel the greatest of block·block pixels. */
+const char *pictures_preview(const PairReport *pair, int block, char out[PICTURES_NAME]);
 int pictures_block(const Threeway *report);
 const char *pictures_accum(const PeelPicture *peel, char out[PICTURES_NAME]);
 const char *pictures_added(const PeelPicture *peel, char out[PICTURES_NAME]);

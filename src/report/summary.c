@@ -44,12 +44,13 @@ const char *summary_psnr(double value, char out[SUMMARY_NUMBER])
     return out;
 }
 
-static bool row_folds(const PairReport *pair, size_t begin, size_t *end)
+/* The end of the run of equal buffers that starts at begin. */
+static size_t equal_run(const PairReport *pair, size_t begin)
 {
-    *end = begin;
-    while (*end < pair->buffer_count && pair->buffers[*end].differing == 0)
-        ++*end;
-    return pair->buffer_count > SUMMARY_UNFOLDED && *end - begin >= 3;
+    size_t end = begin;
+    while (end < pair->buffer_count && pair->buffers[end].differing == 0)
+        end++;
+    return end;
 }
 
 SummaryRow summary_row_of(const BufferMetrics *buffer)
@@ -65,14 +66,14 @@ SummaryRow summary_row_of(const BufferMetrics *buffer)
     return row;
 }
 
-bool summary_row(const PairReport *pair, size_t *cursor, SummaryRow *out)
+bool summary_row(const PairReport *pair, size_t unfolded, size_t *cursor, SummaryRow *out)
 {
-    size_t begin = *cursor, end;
+    size_t begin = *cursor, end = equal_run(pair, begin);
     if (begin >= pair->buffer_count)
         return false;
     *out = summary_row_of(&pair->buffers[begin]);
     *cursor = begin + 1;
-    if (!row_folds(pair, begin, &end))
+    if (pair->buffer_count <= unfolded || end < begin + 3)
         return true;
     out->buffers = end - begin;
     for (size_t i = begin + 1; i < end; i++)

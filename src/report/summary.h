@@ -25,13 +25,10 @@ typedef struct SummaryRow {
 } SummaryRow;
 
 /* Steps through a pair's rows: *cursor starts at 0; false at the end. Every buffer that differs
- * has its own row. Where a pair has more than SUMMARY_UNFOLDED buffers, three or more equal ones
- * in succession share a row. */
-enum {
-    SUMMARY_UNFOLDED = 40
-};
+ * has its own row. Where a pair has more than `unfolded` buffers, three or more equal ones in
+ * succession share a row. */
+bool summary_row(const PairReport *pair, size_t unfolded, size_t *cursor, SummaryRow *out);
 SummaryRow summary_row_of(const BufferMetrics *buffer);
-bool summary_row(const PairReport *pair, size_t *cursor, SummaryRow *out);
 
 typedef struct SummaryTotals {
     size_t buffers, buffers_differing;

@@ -4,6 +4,11 @@
 
 #include <string.h>
 
+/* Up to so many buffers have a row each. */
+enum {
+    UNFOLDED = 96
+};
+
 static const char *pair_name(const PairReport *pair, char out[SUMMARY_NUMBER])
 {
     snprintf(out, SUMMARY_NUMBER, "%s - %s", threeway_renderer_name(pair->a),
@@ -38,7 +43,7 @@ static void print_buffers(const PairReport *pair, FILE *out)
         return;
     fprintf(out, "\n%-34s %7s %15s %13s %13s %9s  %s\n", pair_name(pair, name), "buffers", "values",
             "differing", "max ULP", "max abs", "first: x, y, channel");
-    while (summary_row(pair, &cursor, &row)) {
+    while (summary_row(pair, UNFOLDED, &cursor, &row)) {
         fprintf(out, "%-34s %7zu %15s %13s %13s %9s", row.label, row.buffers,
                 summary_count(row.values, values), summary_count(row.differing, differing),
                 summary_ulp(row.max_ulp, ulp), summary_real(row.max_abs, difference));

@@ -1,5 +1,8 @@
 /* What the tests against the driver share: a context, two operand textures of seeded inputs, and
- * programs that compute on them. A failing test prints operands that reproduce it. */
+ * programs that compute on them. A failing test prints operands that reproduce it.
+ *
+ * Loops over values abort on a difference instead of asserting each: check sends a message to its
+ * parent process for every assertion. */
 #ifndef PEEL_TESTS_DRIVER_H
 #define PEEL_TESTS_DRIVER_H
 

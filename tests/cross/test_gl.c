@@ -264,7 +264,8 @@ START_TEST(test_memory_limit)
     Scene scene = quad_scene(layered, 2);
     RenderDesc desc = {.width = 1000, .height = 1000, .max_memory = 100 << 20};
     Frame frame;
-    ck_assert(gl_render(&scene, &desc, NULL, &frame) == RESULT_NO_MEMORY);
+    ck_assert_msg(gl_render(&scene, &desc, NULL, &frame) == RESULT_NO_MEMORY, "%s",
+                  result_message());
     ck_assert_ptr_nonnull(strstr(result_message(), "the limit is 100 MiB"));
     ck_assert_ptr_null(frame.final.pixels);
     desc = (RenderDesc){.width = 0, .height = 5};

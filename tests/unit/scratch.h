@@ -4,9 +4,11 @@
 
 #include <check.h>
 #include <dirent.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 static char scratch_directory[64];
@@ -45,6 +47,14 @@ static inline int scratch_entries(void)
         count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
     closedir(directory);
     return count;
+}
+
+/* Makes every write beyond so many bytes of a file fail, as a full disk does (with "File too
+ * large"); RLIM_INFINITY ends it. No assertion may stand between the two: check writes files. */
+static inline void scratch_limit(rlim_t bytes)
+{
+    signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &(struct rlimit){bytes, RLIM_INFINITY});
 }
 
 /* The file's text, at most size − 1 bytes; returns their number. */

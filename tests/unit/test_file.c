@@ -4,6 +4,7 @@
 #include "scratch.h"
 #include "testing.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 
 START_TEST(test_write_and_replace)
@@ -65,19 +66,45 @@ START_TEST(test_bad_targets)
 }
 END_TEST
 
-START_TEST(test_full_device)
+START_TEST(test_full_disk)
 {
-    ck_assert_int_eq(file_write("/dev/full", "x", 1), RESULT_IO);
-    ck_assert_str_eq(result_message(), "/dev/full: cannot write this file: No space left on "
-                                       "device");
-    struct stat status;
-    ck_assert_int_eq(stat("/dev/full", &status), 0);
-    ck_assert_msg(S_ISCHR(status.st_mode), "the device was replaced");
+    static char bytes[20000];
+    const char *path = scratch_path("a.txt");
+    char expected[256];
+    scratch_limit(1000);
+    Result result = file_write(path, bytes, sizeof bytes);
+    scratch_limit(RLIM_INFINITY);
+    ck_assert_int_eq(result, RESULT_IO);
+    snprintf(expected, sizeof expected, "%s: cannot write this file: File too large", path);
+    ck_assert_str_eq(result_message(), expected);
     FileWriter writer;
-    ck_assert_int_eq(file_writer_open("/dev/full", &writer), RESULT_OK);
-    ck_assert_int_eq(file_writer_put_at(&writer, "x", 1, 0), RESULT_IO);
+    ck_assert_int_eq(file_writer_open(path, &writer), RESULT_OK);
+    scratch_limit(1000);
+    Result at = file_writer_put_at(&writer, bytes, 10, 2000);
+    scratch_limit(RLIM_INFINITY);
+    ck_assert_int_eq(at, RESULT_IO);
     ck_assert_int_eq(file_writer_print(&writer, "more"), RESULT_IO);
     ck_assert_int_eq(file_writer_close(&writer, true), RESULT_IO);
+    ck_assert_int_eq(scratch_entries(), 0);
+}
+END_TEST
+
+/* A device or pipe is written, not replaced by a regular file. */
+START_TEST(test_pipe)
+{
+    const char *path = scratch_path("pipe");
+    char text[16] = "";
+    ck_assert_int_eq(mkfifo(path, 0600), 0);
+    int reader = open(path, O_RDONLY | O_NONBLOCK);
+    ck_assert_int_ge(reader, 0);
+    ck_assert_int_eq(file_write(path, "through", 7), RESULT_OK);
+    ck_assert_int_eq(read(reader, text, sizeof text), 7);
+    ck_assert_str_eq(text, "through");
+    close(reader);
+    struct stat status;
+    ck_assert_int_eq(stat(path, &status), 0);
+    ck_assert_msg(S_ISFIFO(status.st_mode), "the pipe was replaced");
+    ck_assert_int_eq(scratch_entries(), 1);
 }
 END_TEST
 
@@ -118,7 +145,8 @@ int main(void)
     tcase_add_test(tests, test_abort_keeps_the_old_file);
     tcase_add_test(tests, test_put_at);
     tcase_add_test(tests, test_bad_targets);
-    tcase_add_test(tests, test_full_device);
+    tcase_add_test(tests, test_full_disk);
+    tcase_add_test(tests, test_pipe);
     tcase_add_test(tests, test_symbolic_link_stays);
     tcase_add_test(tests, test_directories);
     suite_add_tcase(suite, tests);

@@ -75,8 +75,7 @@ static inline Material *add_quad(Stage *stage, float depth, float half, const fl
     return &stage->materials[i];
 }
 
-/* ---- a sink that keeps the layers --------------------------------------------------------------
- */
+/* ---- a sink that keeps the layers ----------------------------------------------------------- */
 
 typedef struct Layers {
     TraceSink sink;

@@ -1,0 +1,109 @@
+#!/bin/sh
+# Bad input: exit 4, one line on stderr, nothing left behind. Usage: bad_input.sh PEEL SOURCE_DIR
+set -u
+peel=$1
+scenes=$2/data/scenes
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+passed=0
+
+# refuse WHAT PATTERN ARGUMENT...: exit 4, one stderr line that has PATTERN, no new file.
+refuse() {
+    what=$1
+    pattern=$2
+    shift 2
+    before=$(find . | sort)
+    "$peel" "$@" >"$work/../peel-out.$$" 2>"$work/../peel-err.$$"
+    code=$?
+    after=$(find . | sort)
+    lines=$(wc -l <"$work/../peel-err.$$")
+    text=$(cat "$work/../peel-err.$$")
+    rm -f "$work/../peel-out.$$" "$work/../peel-err.$$"
+    if [ $code != 4 ] || [ "$lines" != 1 ] || [ "$before" != "$after" ] ||
+        ! printf '%s' "$text" | grep -q -- "$pattern"; then
+        echo "FAIL $what: exit $code (expected 4), $lines lines (expected 1), '$text'" \
+            "(expected '$pattern'); new files: $(printf '%s' "$after" | wc -l)" \
+            "of $(printf '%s' "$before" | wc -l)"
+        failed=$((failed + 1))
+    else
+        passed=$((passed + 1))
+    fi
+}
+
+mkdir directory readonly
+: >empty.gltf
+: >empty.glb
+echo 'hello' >text.gltf
+echo '{"a":1}' >other.gltf
+echo '{"asset":{"version":"1.0"}}' >old.gltf
+printf 'v 0 0 0\n' >mesh.obj
+head -c 2000 "$scenes/chain.gltf" >truncated.gltf
+"$peel" scenes chain -o whole.glb || failed=$((failed + 1))
+head -c 3000 whole.glb >truncated.glb
+head -c 19 whole.glb >header.glb
+sed 's/"count": *[0-9]*/"count": 99999999/' "$scenes/crossing_planes.gltf" >count.gltf
+sed 's/"baseColorFactor"/"baseColourFactor"/' "$scenes/crossing_planes.gltf" >unknown_key.gltf
+
+out="-o out.png"
+# shellcheck disable=SC2086 # $out is two words
+{
+    refuse 'missing file' 'nosuch.gltf' render nosuch.gltf $out
+    refuse 'directory' 'directory' render directory $out
+    refuse 'empty gltf' 'empty.gltf' render empty.gltf $out
+    refuse 'empty glb' 'empty.glb' render empty.glb $out
+    refuse 'text' 'text.gltf' render text.gltf $out
+    refuse 'another JSON' 'other.gltf' render other.gltf $out
+    refuse 'glTF 1.0' 'old.gltf' render old.gltf $out
+    refuse 'OBJ' 'mesh.obj' render mesh.obj $out
+    refuse 'truncated JSON' 'truncated.gltf' render truncated.gltf $out
+    refuse 'truncated glb' 'truncated.glb' render truncated.glb $out
+    refuse 'glb header only' 'header.glb' render header.glb $out
+    refuse 'counts past the buffer' 'count.gltf' render count.gltf $out
+    refuse 'size 0' '--size' render tutorial $out --size 0x10
+    refuse 'size huge' '--size' render tutorial $out --size 100000x100000
+    refuse 'size text' '--size' render tutorial $out --size big
+    refuse 'size trailing' '--size' render tutorial $out --size 10x10x
+    refuse 'memory' 'max-memory' render tutorial $out --size 4096x4096 --max-memory 1M
+    refuse 'memory, gl' 'limit' render tutorial $out --with gl --size 4096x4096 --max-memory 1M
+    refuse 'memory, truth' 'at most' render tutorial $out --with truth --size 4096x4096 --max-memory 1K
+    refuse 'unknown option' 'bogus' render tutorial $out --bogus
+    refuse 'option without value' 'lacks its value' render tutorial -o
+    refuse 'unknown method' '--method' render tutorial $out --method magic
+    refuse 'unknown renderer' '--with' render tutorial $out --with vulkan
+    refuse 'passes 0' '--passes' render tutorial $out --passes 0
+    refuse 'passes -1' '--passes' render tutorial $out --passes -1
+    refuse 'lights x' '--lights' render tutorial $out --lights x
+    refuse 'opacity 2' '--opacity' render tutorial $out --opacity 2
+    refuse 'opacity nan' '--opacity' render tutorial $out --opacity nan
+    refuse 'background' '--background' render tutorial $out --background 1,2
+    refuse 'camera' '--camera' render tutorial $out --camera nosuch
+    refuse 'camera index' '--camera' render tutorial $out --camera 99
+    refuse 'threads 0' '--threads' render tutorial $out --threads 0
+    refuse 'two scenes' 'already given' render tutorial chain $out
+    refuse 'no scene' 'no scene' render $out
+    refuse 'no command' 'no command'
+    refuse 'unknown command' "'paint' is no command" paint
+}
+refuse 'no output' '-o FILE' render tutorial
+refuse 'output extension' '.png or .exr' render tutorial -o out.jpg
+refuse 'output directory missing' 'nosuch/out.png' render tutorial --size 8x8 -o nosuch/out.png
+refuse 'output is a directory' 'directory' render tutorial --size 8x8 --trace ./directory/../directory.exr/x.exr
+refuse 'disk full' '/dev/full' compare tutorial --size 8x8 --json /dev/full
+refuse 'report below a file' 'text.gltf' compare tutorial --size 8x8 --report text.gltf/out
+refuse 'scene list: unknown' 'nosuch' scenes nosuch -o x.gltf
+refuse 'scene without output' '-o FILE' scenes tutorial
+refuse 'json in a missing directory' 'nosuch/x.json' compare tutorial --size 8x8 --json nosuch/x.json
+refuse 'tolerance' '--tolerance' compare tutorial --tolerance -1
+
+# No GL: a driver that cannot be loaded.
+GALLIUM_DRIVER=nosuch "$peel" render tutorial --size 8x8 --with gl -o gl.png >/dev/null 2>err
+code=$?
+if [ $code != 0 ] && { [ $code != 4 ] || [ "$(wc -l <err)" != 1 ]; }; then
+    echo "FAIL no GL: exit $code, $(cat err)"
+    failed=$((failed + 1))
+fi
+
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
