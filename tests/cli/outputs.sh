@@ -1,0 +1,101 @@
+#!/bin/sh
+# What the commands write, read by other programs, and their exit codes.
+# Usage: outputs.sh PEEL SOURCE_DIR
+set -u
+peel=$1
+source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+passed=0
+
+# expect WHAT COMMAND...: the command succeeds.
+expect() {
+    what=$1
+    shift
+    if "$@" >log 2>&1; then
+        passed=$((passed + 1))
+    else
+        echo "FAIL $what: $*: exit $?"
+        tail -5 log
+        failed=$((failed + 1))
+    fi
+}
+
+# exits CODE WHAT COMMAND...
+exits() {
+    code=$1
+    what=$2
+    shift 2
+    "$@" >output 2>&1
+    got=$?
+    if [ $got = "$code" ]; then
+        passed=$((passed + 1))
+    else
+        echo "FAIL $what: $*: exit $got, expected $code"
+        tail -5 output
+        failed=$((failed + 1))
+    fi
+}
+
+has() {
+    expect "$1 has '$3'" grep -q -- "$3" "$2"
+}
+
+for scene in teapot_hall teapot_hall_stress tutorial chain crossing_planes alpha_ladder; do
+    expect "scenes $scene" "$peel" scenes $scene -o $scene.gltf
+    expect "data/scenes/$scene.gltf is what 'peel scenes' writes" \
+        cmp $scene.gltf "$source/data/scenes/$scene.gltf"
+    exits 0 "compare $scene" "$peel" compare $scene.gltf --size 96x54 --lights 16
+done
+
+expect 'png' "$peel" render chain.gltf --size 100x60 -o a.png
+expect 'exr' "$peel" render chain.gltf --size 100x60 -o a.exr
+expect 'gl exr' "$peel" render chain.gltf --size 100x60 -o b.exr --with gl
+expect 'truth exr' "$peel" render chain.gltf --size 100x60 -o c.exr --with truth
+expect 'ref and gl: the same file content' idiff -q a.exr b.exr
+exits 0 'ref and truth: close' idiff -q -fail 1e-3 -warn 1e-3 a.exr c.exr
+oiiotool --info -v a.exr >info
+has 'EXR' info '100 x   60, 4 channel, float'
+oiiotool --info -v a.png >info
+has 'PNG' info '100 x   60, 3 channel, uint8'
+
+expect 'trace' "$peel" render chain.gltf --size 100x60 --passes 2 --trace t.exr
+oiiotool --info -v -a t.exr >info
+for name in opaque.depth opaque.normal opaque.position opaque.diffuse opaque.material \
+    peel.0.depth peel.0.accum peel.1.normal peel.1.material peel.1.accum accum display; do
+    has 'trace' info "\"$name\""
+done
+has 'trace' info 'peel:format: "rgba8"'
+
+exits 0 'glb' "$peel" scenes chain -o chain.glb
+exits 0 'compare glb' "$peel" compare chain.glb --size 64x36
+exits 2 'a tolerance that nothing meets' "$peel" compare chain.gltf --size 64x36 --tolerance 0
+exits 0 'the seed profile with room' "$peel" compare chain.gltf --size 64x36 --profile seed \
+    --tolerance 1
+exits 0 'unfused' "$peel" compare chain.gltf --size 64x36 --fma off
+has 'unfused' output 'separate'
+exits 0 'report and JSON' "$peel" compare chain.gltf --size 64x36 --passes 1 --json j.json \
+    --report report/of/this
+has 'the pass limit' output 'passes ended first'
+has 'JSON' j.json '"lost_to_pass_limit"'
+has 'JSON' j.json '"residual"'
+expect 'report' test -s report/of/this/index.html
+has 'report' report/of/this/index.html 'peel compare chain.gltf --size 64x36 --passes 1'
+exits 0 '1x1' "$peel" compare chain.gltf --size 1x1
+exits 0 'no lights' "$peel" compare chain.gltf --size 33x17 --lights 0
+exits 0 'all opaque' "$peel" compare chain.gltf --size 33x17 --opacity 1
+exits 0 'all nearly gone' "$peel" compare chain.gltf --size 33x17 --opacity 0.00001
+exits 0 'background' "$peel" compare chain.gltf --size 33x17 --background 0.2,0.5,1
+exits 0 'time' "$peel" compare teapot_hall.gltf --size 33x17 --time 3.5
+exits 0 'help' "$peel" --help
+exits 0 'help of a command' "$peel" compare --help
+has 'help of a command' output '--tolerance'
+exits 0 'version' "$peel" --version
+
+engine=/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb
+exits 0 'a real scene' "$peel" compare $engine --opacity 0.3 --size 192x108 --cull none
+
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
