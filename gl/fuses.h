@@ -4,9 +4,15 @@
 
 #include "context.h"
 
-/* Draws one triangle and compares its interpolated depths with both predictions of number/op.h:
- * *fused tells whether the driver rounds a·b + c once. Changes bindings and the viewport. Kept for
- * the process after the first call. NO_GL when the driver follows neither. */
-Result fuses_detect(Context *context, bool *fused);
+typedef enum FusesMode {
+    FUSES_UNKNOWN = 0, /* neither prediction: not llvmpipe's arithmetic */
+    FUSES_NOT,         /* a·b + c is rounded twice */
+    FUSES_YES,         /* once */
+} FusesMode;
+
+/* Draws one triangle and compares its interpolated depths with both predictions of number/op.h.
+ * Changes bindings and the viewport. Kept for the process after the first call, as a driver's mode
+ * does not change. */
+Result fuses_detect(Context *context, FusesMode *mode);
 
 #endif

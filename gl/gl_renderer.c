@@ -44,9 +44,14 @@ static Result render_in(Context *context, const Scene *scene, const RenderDesc *
                         const View *view, TraceSink *trace, Frame *out)
 {
     describe_driver(out);
-    Result result = fuses_detect(context, &out->fused);
+    FusesMode mode;
+    Result result = fuses_detect(context, &mode);
     if (result != RESULT_OK)
         return result;
+    if (mode == FUSES_UNKNOWN)
+        result_warn("%s does not interpolate as llvmpipe does: its bits will differ from ref's",
+                    out->renderer);
+    out->fused = mode == FUSES_YES;
     double wall_ms = clock_ms(CLOCK_MONOTONIC), cpu_ms = clock_ms(CLOCK_PROCESS_CPUTIME_ID);
     Passes passes;
     result = passes_create(context, scene, desc, view, &passes);
@@ -89,7 +94,12 @@ Result gl_driver_fuses(bool *fused)
     Result result = context_open(0, &context);
     if (result != RESULT_OK)
         return result;
-    result = fuses_detect(context, fused);
+    FusesMode mode;
+    result = fuses_detect(context, &mode);
     context_close(context);
+    if (result == RESULT_OK && mode == FUSES_UNKNOWN)
+        result = result_fail(RESULT_NO_GL, "OpenGL: depths interpolated with or without fused "
+                                           "multiply-add expected, the driver follows neither");
+    *fused = result == RESULT_OK && mode == FUSES_YES;
     return result;
 }

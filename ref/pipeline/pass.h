@@ -58,6 +58,13 @@ static inline bool pass_peeled(const Pass *pass, float z, uint32_t key, uint32_t
     return key <= previous;
 }
 
+/* Whether further peels would have come to it: behind the previous layer, and not discarded with
+ * it by the raw test, which cannot tell two 24-bit depths apart where a fetch rounds up. */
+static inline bool pass_remains(const Pass *pass, float z, uint32_t key, uint32_t previous)
+{
+    return key > previous && !pass_peeled(pass, z, key, previous);
+}
+
 static inline bool pass_depth_test(const Pass *pass, uint32_t key, uint32_t stored)
 {
     return pass->desc->depth_func == DEPTH_LEQUAL ? key <= stored : key < stored;

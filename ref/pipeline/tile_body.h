@@ -97,7 +97,8 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
     int pixel = local_index(tile, x, y);
     float z = setup_depth_at(pass->fused, setup, x, y);
     uint32_t key = depth_key(pass->depth_format, z);
-    if (!pass_hidden(pass, z, key, tile->scratch->opaque_key[pixel]) && key > tile->previous[pixel])
+    if (!pass_hidden(pass, z, key, tile->scratch->opaque_key[pixel]) &&
+        pass_remains(pass, z, key, tile->previous[pixel]))
         tile->scratch->remaining[pixel]++;
 }
 

@@ -46,12 +46,8 @@ static int open_target(FileWriter *writer)
             return -1;
         return create_temporary(writer->path, &writer->temporary);
     }
-    if (S_ISDIR(status.st_mode)) {
-        errno = EISDIR;
-        return -1;
-    }
     if (!S_ISREG(status.st_mode))
-        return open(writer->path, O_WRONLY | O_CLOEXEC);
+        return open(writer->path, O_WRONLY | O_CLOEXEC); /* a directory refuses */
     char *resolved = realpath(writer->path, NULL);
     if (!resolved)
         return -1;

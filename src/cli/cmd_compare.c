@@ -6,9 +6,11 @@
 #include "report/table.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct CompareCommand {
     RenderOptions render;
@@ -103,10 +105,19 @@ static Result check_fma(const RenderOptions *options, const Threeway *report)
                        options->fma == FMA_ON ? "on" : "off", fused ? "fuses" : "does not fuse");
 }
 
+/* Made, and found writable, before minutes of work and not after. */
+static Result open_directory(const char *path)
+{
+    Result result = file_make_directories(path);
+    if (result == RESULT_OK && access(path, W_OK) != 0)
+        result = result_fail(RESULT_IO, "%s: cannot write to this directory: %s", path,
+                             strerror(errno));
+    return result;
+}
+
 static Result compare(const CompareCommand *command, const Scene *scene, Threeway *report)
 {
-    /* Before minutes of work, not after. */
-    Result result = command->report ? file_make_directories(command->report) : RESULT_OK;
+    Result result = command->report ? open_directory(command->report) : RESULT_OK;
     if (result == RESULT_OK)
         result = threeway_run(scene, command->render.scene_path, &command->render.desc,
                               bind_renderers, command->tolerance, command->report != NULL, report);

@@ -12,8 +12,20 @@ static bool is_diagnostic(const char *name)
     return dot && strcmp(dot, ".primitive") == 0;
 }
 
-static Result add(Against *against, const char *name, BufferMetrics **out)
+/* The row of this name: the latest, because a buffer's rectangles come one after another. */
+static BufferMetrics *find(const Against *against, const char *name)
 {
+    for (size_t i = against->count; i-- > 0;)
+        if (strcmp(against->buffers[i].name, name) == 0)
+            return &against->buffers[i];
+    return NULL;
+}
+
+static Result find_or_add(Against *against, const char *name, BufferMetrics **out)
+{
+    *out = find(against, name);
+    if (*out)
+        return RESULT_OK;
     Result result = memory_grow((void **)&against->buffers, &against->capacity, against->count + 1,
                                 sizeof *against->buffers);
     if (result != RESULT_OK)
@@ -24,11 +36,28 @@ static Result add(Against *against, const char *name, BufferMetrics **out)
     return RESULT_OK;
 }
 
+static uint64_t value_count(PixelFormat format, int width, int height)
+{
+    return (uint64_t)width * (uint64_t)height * (uint64_t)format_info(format)->channels;
+}
+
 /* A buffer that only one side has: every value differs. */
 static void all_differ(BufferMetrics *metrics, PixelFormat format, int width, int height)
 {
-    metrics->values = (uint64_t)width * (uint64_t)height * (uint64_t)format_info(format)->channels;
+    metrics->values = value_count(format, width, height);
     metrics->differing = metrics->values;
+    metrics->max_ulp = UINT32_MAX;
+    metrics->has_first = true;
+}
+
+/* Values of a shared buffer that never came differ too. */
+static void add_missing(BufferMetrics *metrics, const StoredBuffer *stored)
+{
+    uint64_t expected = value_count(stored->format, stored->width, stored->height);
+    if (metrics->values >= expected)
+        return;
+    metrics->differing += expected - metrics->values;
+    metrics->values = expected;
     metrics->max_ulp = UINT32_MAX;
     metrics->has_first = true;
 }
@@ -39,7 +68,7 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
     if (is_diagnostic(buffer->name))
         return RESULT_OK;
     BufferMetrics *metrics;
-    Result result = add(against, buffer->name, &metrics);
+    Result result = find_or_add(against, buffer->name, &metrics);
     if (result != RESULT_OK)
         return result;
     int index = store_find(against->reference, buffer->name);
@@ -79,10 +108,14 @@ Result against_finish(Against *against)
 {
     for (int i = 0; i < store_count(against->reference); i++) {
         const StoredBuffer *stored = store_buffer(against->reference, i);
-        if (against->seen[i] || is_diagnostic(stored->name))
+        if (is_diagnostic(stored->name))
             continue;
+        if (against->seen[i]) {
+            add_missing(find(against, stored->name), stored);
+            continue;
+        }
         BufferMetrics *metrics;
-        Result result = add(against, stored->name, &metrics);
+        Result result = find_or_add(against, stored->name, &metrics);
         if (result != RESULT_OK)
             return result;
         all_differ(metrics, stored->format, stored->width, stored->height);

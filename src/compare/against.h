@@ -19,8 +19,9 @@ typedef struct Against {
 /* reference must outlive it. The caller closes with against_finish and against_free. */
 Result against_create(const TraceStore *reference, Against *out);
 
-/* Adds the buffers of the reference that never came (all their values differ); *.primitive
- * buffers, which not every renderer has, are left out. */
+/* Adds the buffers of the reference that never came (all their values differ) and counts the
+ * values that a buffer's rectangles left out as differing; *.primitive buffers, which not every
+ * renderer has, are left out. */
 Result against_finish(Against *against);
 void against_free(Against *against);
 

@@ -2,7 +2,9 @@
 
 #include "base/memory.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum {
     TYPE_INT8 = 5120,
@@ -53,8 +55,34 @@ static Result check_extensions(const GltfCheck *check)
     return RESULT_OK;
 }
 
-/* ---- buffers and accessors ---------------------------------------------------------------------
- */
+/* ---- buffers and accessors ------------------------------------------------------------------ */
+
+/* An external buffer is as long as it says: Assimp leaks the open file when it is not. */
+static Result check_external(const GltfCheck *check, size_t index, const json_t *buffer)
+{
+    const char *uri = json_string_value(json_object_get(buffer, "uri"));
+    const char *slash = strrchr(check->path, '/');
+    size_t folder = slash ? (size_t)(slash - check->path) + 1 : 0;
+    size_t expected = gltf_json_index(buffer, "byteLength", 0);
+    struct stat info;
+    if (!uri || strncmp(uri, "data:", 5) == 0)
+        return RESULT_OK;
+    char *path = memory_array(folder + strlen(uri) + 1, 1);
+    if (!path)
+        return RESULT_NO_MEMORY;
+    memcpy(path, check->path, folder);
+    strcpy(path + folder, uri);
+    bool found = stat(path, &info) == 0 && S_ISREG(info.st_mode);
+    free(path);
+    if (!found)
+        return result_fail(RESULT_BAD_INPUT, "%s: buffer %zu: no file %s beside it", check->path,
+                           index, uri);
+    if ((uint64_t)info.st_size < expected)
+        return result_fail(RESULT_BAD_INPUT,
+                           "%s: buffer %zu: %s is truncated: %lld bytes, expected %zu", check->path,
+                           index, uri, (long long)info.st_size, expected);
+    return RESULT_OK;
+}
 
 static Result check_views(const GltfCheck *check)
 {
@@ -71,6 +99,9 @@ static Result check_views(const GltfCheck *check)
             (i != 0 || gltf_json_index(element, "byteLength", 0) > check->json->binary_count))
             return gltf_fail(check, "buffer", i,
                              "a uri, or a binary chunk as long as its byteLength");
+        Result result = check_external(check, i, element);
+        if (result)
+            return result;
     }
     json_array_foreach(gltf_array(check, "bufferViews"), i, element)
     {
@@ -133,8 +164,7 @@ static Result check_accessor(const GltfCheck *check, size_t index, size_t compon
     return RESULT_OK;
 }
 
-/* ---- meshes ------------------------------------------------------------------------------------
- */
+/* ---- meshes --------------------------------------------------------------------------------- */
 
 /* A vertex attribute of floats with as many elements as POSITION; absent is fine. */
 static Result check_attribute(const GltfCheck *check, size_t mesh, const json_t *attributes,
@@ -252,8 +282,7 @@ static Result check_meshes(const GltfCheck *check)
     return RESULT_OK;
 }
 
-/* ---- materials -------------------------------------------------
- */
+/* ---- materials ------------------------------------------------------------------------------ */
 
 static bool positive(const json_t *numbers)
 {
@@ -284,7 +313,7 @@ static Result check_materials(const GltfCheck *check)
     return RESULT_OK;
 }
 
-/* ---- shared with gltf_graph ---- */
+/* ---- shared with gltf_graph ----------------------------------------------------------------- */
 
 Result gltf_fail(const GltfCheck *check, const char *what, size_t index, const char *expected)
 {

@@ -11,8 +11,7 @@ enum {
 #define NO_PARENT SIZE_MAX
 #define ROOT      (SIZE_MAX - 1) /* in place of a parent */
 
-/* ---- cameras and lights ------------------------------------------------------------------------
- */
+/* ---- cameras and lights --------------------------------------------------------------------- */
 
 static Result check_camera(const GltfCheck *check, size_t index)
 {
@@ -59,8 +58,7 @@ static Result check_light(const GltfCheck *check, size_t index)
     return RESULT_OK;
 }
 
-/* ---- nodes -------------------------------------------------------------------------------------
- */
+/* ---- nodes ---------------------------------------------------------------------------------- */
 
 static Result check_placement(const GltfCheck *check, size_t index, const json_t *node)
 {

@@ -13,8 +13,7 @@ enum {
     MODE_FAN = 6
 };
 
-/* ---- reading -----------------------------------------------------------------------------------
- */
+/* ---- reading -------------------------------------------------------------------------------- */
 
 static uint32_t word(const unsigned char *bytes)
 {
@@ -108,8 +107,7 @@ void gltf_json_free(GltfJson *json)
     *json = (GltfJson){0};
 }
 
-/* ---- looking things up -------------------------------------------------------------------------
- */
+/* ---- looking things up ---------------------------------------------------------------------- */
 
 json_t *gltf_json_element(const GltfJson *json, const char *key, size_t index)
 {
@@ -128,8 +126,7 @@ bool gltf_json_drawn(const json_t *primitive)
     return mode >= MODE_TRIANGLES && mode <= MODE_FAN;
 }
 
-/* ---- reducing ----------------------------------------------------------------------------------
- */
+/* ---- reducing ------------------------------------------------------------------------------- */
 
 /* A new object with those of the members that `from` has; they are shared, not copied. */
 static json_t *pick(const json_t *from, const char *const *keys)
@@ -208,8 +205,7 @@ json_t *gltf_json_reduced(const GltfJson *json)
     return out;
 }
 
-/* ---- warning -----------------------------------------------------------------------------------
- */
+/* ---- warning -------------------------------------------------------------------------------- */
 
 /* Appends ", text" as far as there is room. */
 static void list(char *line, size_t size, const char *before, const char *text)

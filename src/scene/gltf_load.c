@@ -37,8 +37,7 @@ static Result fail(Loader *loader, const char *expected)
     return loader->builder.result;
 }
 
-/* ---- materials ---------------------------------------------------------------------------------
- */
+/* ---- materials ------------------------------------------------------------------------------ */
 
 static float material_float(const struct aiMaterial *from, const char *key, float fallback)
 {
@@ -73,8 +72,7 @@ static uint32_t add_material(Loader *loader, const struct aiMaterial *from)
     return builder_material(&loader->builder, &material, name.data);
 }
 
-/* ---- nodes -------------------------------------------------------------------------------------
- */
+/* ---- nodes ---------------------------------------------------------------------------------- */
 
 /* An Assimp matrix is row-major: a1 to a4 is the first row. */
 static Matrix from_assimp(const struct aiMatrix4x4 *a)
@@ -235,6 +233,9 @@ static void add_node(Loader *loader, size_t number, const struct aiNode *from, c
     Matrix world = matrix_multiply(parent, &local);
     snprintf(loader->node_name, sizeof loader->node_name, "node %zu (%.80s)", number,
              name ? name : "unnamed");
+    for (int i = 0; i < 16; i++)
+        if (!isfinite(local.m[i]))
+            fail(loader, "a finite matrix in single precision");
     if (local.m[3] != 0.0 || local.m[7] != 0.0 || local.m[11] != 0.0 || local.m[15] != 1.0)
         fail(loader, "an affine matrix, with a last row of 0 0 0 1");
     add_instances(loader, node, from, &world);
@@ -268,8 +269,7 @@ static void add_roots(Loader *loader)
                  count == 1 ? top : top->mChildren[i], &identity);
 }
 
-/* ---- the whole ---------------------------------------------------------------------------------
- */
+/* ---- the whole ------------------------------------------------------------------------------ */
 
 static Result convert(Loader *loader, Scene *out)
 {

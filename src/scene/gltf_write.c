@@ -36,8 +36,7 @@ typedef struct Writer {
     bool out_of_json; /* a jansson call failed: memory is exhausted */
 } Writer;
 
-/* ---- JSON --------------------------------------------------------------------------------------
- */
+/* ---- JSON ----------------------------------------------------------------------------------- */
 
 /* Both take over value; NULL counts as a failure. */
 static void put(Writer *writer, json_t *object, const char *key, json_t *value)
@@ -88,8 +87,7 @@ static json_t *doubles(Writer *writer, const double *values, int count)
     return array;
 }
 
-/* ---- buffer ------------------------------------------------------------------------------------
- */
+/* ---- buffer --------------------------------------------------------------------------------- */
 
 /* A view of `size` bytes at the end of the buffer, on a 4-byte boundary, and an accessor of all
  * of it, which is returned for further properties (borrowed; NULL after a failure). */
@@ -174,8 +172,7 @@ static void add_geometry(Writer *writer, uint32_t index)
                      TARGET_VERTICES, TYPE_FLOAT, "VEC2", mesh->vertex_count);
 }
 
-/* ---- pieces ------------------------------------------------------------------------------------
- */
+/* ---- pieces --------------------------------------------------------------------------------- */
 
 static size_t find_pair(Writer *writer, const Instance *instance)
 {
@@ -259,8 +256,7 @@ static json_t *light_json(Writer *writer, const Light *light)
     return json;
 }
 
-/* ---- nodes -------------------------------------------------------------------------------------
- */
+/* ---- nodes ---------------------------------------------------------------------------------- */
 
 /* A translation, a matrix, or nothing at all. */
 static void put_placement(Writer *writer, json_t *node, const Matrix *world)
@@ -388,8 +384,7 @@ static json_t *document(Writer *writer)
     return root;
 }
 
-/* ---- the file -----------------------------------------------------------------------------------
- */
+/* ---- the file ------------------------------------------------------------------------------- */
 
 static void put_buffer(Writer *writer, json_t *root, bool binary)
 {

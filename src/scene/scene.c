@@ -48,7 +48,7 @@ uint64_t scene_triangle_count(const Scene *scene)
     return count;
 }
 
-/* ---- validation ------------------------------------------------------------------------------ */
+/* ---- validation ----------------------------------------------------------------------------- */
 
 static bool within(double x, double low, double high) /* false for NaN */
 {
@@ -290,7 +290,7 @@ Result scene_validate(const Scene *scene)
     return result;
 }
 
-/* ---- what a scene may lack ------------------------------------------------------------------- */
+/* ---- what a scene may lack ------------------------------------------------------------------ */
 
 bool scene_bounds(const Scene *scene, double low[3], double high[3])
 {

@@ -22,7 +22,11 @@ typedef struct Mesh {
     uint32_t *index; /* 3 per triangle, each < vertex_count */
 } Mesh;
 
-typedef enum AlphaMode { ALPHA_OPAQUE = 0, ALPHA_MASK, ALPHA_BLEND } AlphaMode;
+typedef enum AlphaMode {
+    ALPHA_OPAQUE = 0,
+    ALPHA_MASK,
+    ALPHA_BLEND
+} AlphaMode;
 
 typedef struct Material {
     char *name;          /* "" if the file gives none */
@@ -43,9 +47,9 @@ typedef struct Instance {
 } Instance;
 
 typedef struct Light {
-    double position[3];    /* world space */
-    float color[3];        /* radiant intensity, ≥ 0, finite */
-    float attenuation[3];  /* constant, linear, quadratic: 1/(c + l·d + q·d²) */
+    double position[3];   /* world space */
+    float color[3];       /* radiant intensity, ≥ 0, finite */
+    float attenuation[3]; /* constant, linear, quadratic: 1/(c + l·d + q·d²) */
 } Light;
 
 typedef struct Camera {
@@ -63,8 +67,8 @@ typedef struct Scene {
     Instance *instances; /* in the scene's draw order */
     Light *lights;
     Camera *cameras;
-    float ambient[3];         /* light that reaches every surface; default 0.25 grey */
-    float background[3];      /* linear; default 0 */
+    float ambient[3];                /* light that reaches every surface; default 0.25 grey */
+    float background[3];             /* linear; default 0 */
     double light_degrees_per_second; /* lights turn about the world's y axis; default 0 */
 } Scene;
 

@@ -257,6 +257,25 @@ START_TEST(test_repeated_layers)
 }
 END_TEST
 
+/* More lights than a uniform block holds. */
+START_TEST(test_many_lights)
+{
+    enum {
+        MANY = 1500
+    };
+    const RenderDesc desc = {.width = 23, .height = 17, .passes = 2};
+    Scene scene = soup_scene(11, 2.0, 3.0, 0.5);
+    Light *lights = memory_array(MANY, sizeof *lights);
+    for (int i = 0; i < MANY; i++)
+        lights[i] = scene.lights[i % LIGHTS];
+    free(scene.lights);
+    scene.lights = lights;
+    scene.light_count = MANY;
+    compare(&scene, &desc);
+    scene_free(&scene);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("gl against ref");
@@ -264,6 +283,7 @@ int main(void)
     tcase_set_timeout(tcase, 300);
     tcase_add_loop_test(tcase, test_soup, 0, sizeof variants / sizeof *variants);
     tcase_add_test(tcase, test_repeated_layers);
+    tcase_add_test(tcase, test_many_lights);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

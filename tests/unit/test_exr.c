@@ -79,7 +79,7 @@ START_TEST(test_many_parts)
     ExrWriter *writer;
     for (int i = 0; i < PARTS; i++) {
         snprintf(names[i], sizeof names[i], "peel.%d.b%d", i / 6, i % 6);
-        parts[i] = (ExrPart){names[i], (PixelFormat)(i % FORMAT_COUNT), 23 + i % 3, 18};
+        parts[i] = (ExrPart){names[i], (PixelFormat)(i % FORMAT_COUNT), 25 - i % 3, 18};
     }
     ck_assert_int_eq(exr_writer_open(path, parts, PARTS, &writer), RESULT_OK);
     for (int i = 0; i < PARTS; i++) {
@@ -105,6 +105,11 @@ START_TEST(test_many_parts)
     snprintf(command, sizeof command, "oiiotool --info -v -a %s 2>&1 | grep -c peel:format", path);
     scratch_run(command, text, sizeof text);
     ck_assert_int_eq(atoi(text), PARTS);
+    /* One display window for parts of three sizes: their union. */
+    snprintf(command, sizeof command,
+             "oiiotool --info -v -a %s 2>&1 | grep -c 'full/display size: 25 x 18'", path);
+    scratch_run(command, text, sizeof text);
+    ck_assert_int_eq(atoi(text), PARTS / 3 * 2); /* not said where it is the part's own size */
 }
 END_TEST
 
@@ -181,6 +186,7 @@ START_TEST(test_bad_files)
 {
     const char *path = scratch_path("a.exr"), *bad = scratch_path("bad.exr");
     static char bytes[1 << 20];
+    ck_assert_ptr_nonnull(freopen(scratch_path("stderr"), "w", stderr));
     Image image = noise(40, 50, FORMAT_RGBA32F, 1);
     ck_assert_int_eq(exr_write(&image, path), RESULT_OK);
     image_free(&image);
@@ -193,9 +199,16 @@ START_TEST(test_bad_files)
     assert_refused(bad);
     assert_refused(scratch_directory);
     assert_refused(scratch_path("none.exr"));
+    image = noise(5, 5, FORMAT_D24, 1);
+    *(uint32_t *)image_pixel(&image, 4, 4) = 0x1000000u;
+    ck_assert_int_eq(exr_write(&image, bad), RESULT_OK);
+    image_free(&image);
+    assert_refused(bad);
     char name[64];
     ck_assert_int_eq(exr_read(path, 1, &image, name), RESULT_BAD_INPUT);
     ck_assert_int_eq(exr_read(path, -1, &image, name), RESULT_BAD_INPUT);
+    fflush(stderr);
+    ck_assert_uint_eq(scratch_read(scratch_path("stderr"), bytes, sizeof bytes), 0);
 }
 END_TEST
 
@@ -243,7 +256,7 @@ START_TEST(test_writer_failures)
     ExrWriter *writer;
     ck_assert_int_eq(exr_write(&image, scratch_path("missing/a.exr")), RESULT_IO);
     ck_assert_int_eq(exr_write(&image, scratch_directory), RESULT_IO);
-    for (rlim_t limit = 0; limit < 700; limit += 50) {
+    for (rlim_t limit = 0; limit < 600; limit += 50) {
         scratch_limit(limit);
         Result full = exr_write(&image, scratch_path("a.exr"));
         scratch_limit(RLIM_INFINITY);
@@ -259,7 +272,9 @@ START_TEST(test_writer_failures)
     ck_assert_int_eq(exr_writer_close(writer, false), RESULT_OK);
     ck_assert_int_eq(scratch_entries(), 0);
     ExrPart twins[] = {{"a", FORMAT_D32F, 8, 8}, {"a", FORMAT_D32F, 8, 8}};
-    ck_assert_int_ne(exr_writer_open(scratch_path("a.exr"), twins, 2, &writer), RESULT_OK);
+    ck_assert_int_eq(exr_writer_open(scratch_path("a.exr"), twins, 2, &writer), RESULT_INTERNAL);
+    twins[1].name = NULL;
+    ck_assert_int_eq(exr_writer_open(scratch_path("a.exr"), twins, 2, &writer), RESULT_INTERNAL);
     ck_assert_int_eq(scratch_entries(), 0);
     image_free(&image);
 }

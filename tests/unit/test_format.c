@@ -66,7 +66,8 @@ START_TEST(test_depth24_codes)
     ck_assert_float_lt(depth24_to_float(0xfffffdu), 1.0f);
     ck_assert_uint_eq(depth24_from_float(1.0f), 0xffffffu);
     ck_assert_uint_eq(depth24_from_float(nextafterf(1.0f, 0.0f)), 0xfffffeu);
-    ck_assert_uint_eq(changed, CHANGED_CODES);
+    /* A fetch is not exact: this many of the 2^24 codes change when fetched and stored again. */
+    ck_assert_uint_eq(changed, 5242879);
 }
 END_TEST
 
@@ -175,8 +176,7 @@ START_TEST(test_ulp_distance)
         if ((distance == 0) != equal || distance != ulp_distance(y, x))
             ck_abort_msg("%a, %a: %u and %u apart", (double)x, (double)y, distance,
                          ulp_distance(y, x));
-        if (isfinite(x) &&
-            ulp_distance(x, nextafterf(x, INFINITY)) != (x == 0.0f ? 1u + !!(bits >> 31) : 1u))
+        if ((bits & 0x7fffffffu) < 0x7f800000u && ulp_distance(x, op_from_bits(bits + 1)) != 1)
             ck_abort_msg("%a: not 1 from its neighbour", (double)x);
     }
 }

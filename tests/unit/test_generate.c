@@ -8,8 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* ---- meshes ------------------------------------------------------------------------------------
- */
+/* ---- meshes --------------------------------------------------------------------------------- */
 
 static void triangle_normal(const Mesh *mesh, uint32_t triangle, double out[3])
 {
@@ -186,8 +185,7 @@ START_TEST(teapot_poles)
 }
 END_TEST
 
-/* ---- scenes ------------------------------------------------------------------------------------
- */
+/* ---- scenes --------------------------------------------------------------------------------- */
 
 static uint64_t digest_bytes(uint64_t digest, const void *bytes, size_t count)
 {

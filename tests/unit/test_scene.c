@@ -119,6 +119,8 @@ START_TEST(bad_lights)
     scene.lights[0] = good;
     scene.lights[0].attenuation[2] = 0.0f;
     refused("light 0: attenuation is 0 at a distance of 0.01");
+    scene.lights[0].attenuation[2] = 0.99e-4f;
+    refused("at a distance of 0.01");
     scene.lights[0].attenuation[2] = 1e-4f; /* on the limit */
     ck_assert_int_eq(scene_validate(&scene), RESULT_OK);
     scene.lights[0].attenuation[0] = INFINITY;

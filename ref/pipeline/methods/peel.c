@@ -171,8 +171,9 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
     size_t pixel = pixel_index(pass, x, y);
     float z = setup_depth_at(pass->fused, setup, x, y);
     uint32_t key = depth_key(pass->depth_format, z);
+    uint32_t previous = key_at(&state->previous_depth, pixel);
     if (!pass_hidden(pass, z, key, key_at(&state->opaque.depth, pixel)) &&
-        key > key_at(&state->previous_depth, pixel))
+        pass_remains(pass, z, key, previous))
         state->remaining[pixel]++;
 }
 

@@ -1,0 +1,134 @@
+/* Random triangle soups as scenes, made by a seed: opaque, masked and transparent materials,
+ * mirrored instances, coplanar duplicates, triangles through every plane of the view volume. */
+#ifndef PEEL_TESTS_SOUP_H
+#define PEEL_TESTS_SOUP_H
+
+#include "base/random.h"
+#include "scene/scene.h"
+
+#include <string.h>
+
+enum {
+    SOUP_MESHES = 6,
+    SOUP_INSTANCES = 12,
+    SOUP_TRIANGLES = 24,
+    SOUP_LIGHTS = 3
+};
+
+/* Owns everything by value: nothing to free. Do not copy once made. */
+typedef struct Soup {
+    Scene scene;
+    Mesh meshes[SOUP_MESHES];
+    float position[SOUP_MESHES][9 * SOUP_TRIANGLES], normal[SOUP_MESHES][9 * SOUP_TRIANGLES];
+    uint32_t index[SOUP_MESHES][3 * SOUP_TRIANGLES];
+    Material materials[8];
+    Instance instances[SOUP_INSTANCES];
+    Light lights[SOUP_LIGHTS];
+    Camera camera;
+} Soup;
+
+static inline void soup_triangle(Random *random, float position[9], float normal[9])
+{
+    double depth = random_range(random, 0.3, 8.0), size = depth * random_range(random, 0.05, 2.5);
+    double centre[3] = {random_range(random, -depth, depth), random_range(random, -depth, depth),
+                        -depth};
+    bool flat = random_bits(random) % 3 == 0; /* all at one depth: ties with others like it */
+    if (flat)
+        centre[2] = -0.5 * (double)(1 + random_bits(random) % 8);
+    for (int i = 0; i < 9; i++) {
+        double offset = i % 3 == 2 && flat ? 0.0 : random_range(random, -size, size);
+        position[i] = (float)(centre[i % 3] + offset);
+        normal[i] = (float)random_range(random, -1, 1);
+    }
+}
+
+static inline void soup_materials(Random *random, Soup *soup)
+{
+    static const float alpha[8] = {1.0f, 1.0f, 0.3f, 0.5f, 0.9f, 1.0f, 0.4f, 5e-5f};
+    static const AlphaMode mode[8] = {ALPHA_OPAQUE, ALPHA_MASK,  ALPHA_BLEND, ALPHA_BLEND,
+                                      ALPHA_BLEND,  ALPHA_BLEND, ALPHA_MASK,  ALPHA_BLEND};
+    for (int i = 0; i < 8; i++) {
+        Material *material = &soup->materials[i];
+        *material = (Material){.name = "",
+                               .roughness = (float)random_unit(random),
+                               .metallic = (float)random_unit(random),
+                               .occlusion = (float)random_unit(random),
+                               .alpha_mode = mode[i],
+                               .alpha_cutoff = 0.5f,
+                               .double_sided = random_bits(random) & 1};
+        for (int c = 0; c < 3; c++)
+            material->base_color[c] = (float)random_unit(random);
+        material->base_color[3] = alpha[i];
+    }
+}
+
+static inline void soup_instances(Random *random, Soup *soup)
+{
+    for (uint32_t i = 0; i < SOUP_INSTANCES; i++) {
+        Instance *instance = &soup->instances[i];
+        *instance = (Instance){.name = "",
+                               .mesh = (uint32_t)(random_bits(random) % SOUP_MESHES),
+                               .material = (uint32_t)(random_bits(random) % 8),
+                               .world = matrix_identity()};
+        switch (random_bits(random) % 4) {
+        case 0:
+            instance->world = matrix_scale(-1, 1, 1);
+            break;
+        case 1: {
+            Matrix turn = matrix_rotate_y(random_range(random, -0.2, 0.2));
+            Matrix shift = matrix_translate(random_range(random, -1, 1), 0, -0.5);
+            instance->world = matrix_multiply(&shift, &turn);
+            break;
+        }
+        default:
+            break; /* in place: coincides with every other instance of the mesh that is */
+        }
+    }
+}
+
+static inline void soup_make(Random *random, Soup *soup)
+{
+    memset(soup, 0, sizeof *soup);
+    for (int m = 0; m < SOUP_MESHES; m++) {
+        uint32_t triangles = 1 + (uint32_t)(random_bits(random) % SOUP_TRIANGLES);
+        for (uint32_t t = 0; t < triangles; t++)
+            soup_triangle(random, &soup->position[m][9 * t], &soup->normal[m][9 * t]);
+        for (uint32_t i = 0; i < 3 * triangles; i++)
+            soup->index[m][i] = i;
+        soup->meshes[m] = (Mesh){.vertex_count = 3 * triangles,
+                                 .triangle_count = triangles,
+                                 .position = soup->position[m],
+                                 .normal = soup->normal[m],
+                                 .index = soup->index[m]};
+    }
+    soup_materials(random, soup);
+    soup_instances(random, soup);
+    for (int i = 0; i < SOUP_LIGHTS; i++) {
+        Light light = {.attenuation = {1.0f, 0.14f, 0.07f}};
+        for (int c = 0; c < 3; c++) {
+            light.position[c] = random_range(random, -5, 5);
+            light.color[c] = (float)random_range(random, 0, 20);
+        }
+        soup->lights[i] = light;
+    }
+    soup->camera =
+        (Camera){.name = "", .world = matrix_identity(), .yfov = 1.4, .near = 0.125, .far = 9.0};
+    soup->scene = (Scene){
+        .name = "soup",
+        .mesh_count = SOUP_MESHES,
+        .material_count = 8,
+        .instance_count = SOUP_INSTANCES,
+        .light_count = (size_t)(random_bits(random) % (SOUP_LIGHTS + 1)),
+        .camera_count = 1,
+        .meshes = soup->meshes,
+        .materials = soup->materials,
+        .instances = soup->instances,
+        .lights = soup->lights,
+        .cameras = &soup->camera,
+        .ambient = {0.25f, 0.25f, 0.25f},
+    };
+    for (int c = 0; c < 3 && random_bits(random) % 2; c++)
+        soup->scene.background[c] = (float)random_unit(random);
+}
+
+#endif

@@ -1,0 +1,253 @@
+/* Broken glTF: every file is refused with one line, or loads; none crashes. */
+#include "scene/generate.h"
+
+#include "small_gltf.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+
+START_TEST(bad_files)
+{
+    refused_file("/no/such/file.gltf", RESULT_IO, "No such file");
+    refused_file(scratch_path("small.obj"), RESULT_BAD_INPUT, "unknown extension");
+    const char *folder = scratch_path("folder.glb");
+    char command[256];
+    snprintf(command, sizeof command, "mkdir %s", folder);
+    ck_assert_int_eq(system(command), 0);
+    refused_file(folder, RESULT_BAD_INPUT, "not a regular file");
+    const char *text = scratch_path("text.gltf");
+    write_text(text, "");
+    refused_file(text, RESULT_BAD_INPUT, "not glTF");
+    write_text(text, "solid cube\nendsolid\n");
+    refused_file(text, RESULT_BAD_INPUT, "not glTF");
+    write_text(text, "{\"asset\":{\"version\":\"1.0\"}}");
+    refused_file(text, RESULT_UNSUPPORTED, "version 1.0");
+    write_text(text, "{\"meshes\":[]}");
+    refused_file(text, RESULT_BAD_INPUT, "asset.version");
+    write_text(text, "glTF\2");
+    refused_file(text, RESULT_BAD_INPUT, ".glb");
+    const char *binary = scratch_path("binary.glb");
+    write_text(binary, "{\"asset\":{\"version\":\"2.0\"}}");
+    refused_file(binary, RESULT_BAD_INPUT, "glTF");
+}
+END_TEST
+
+START_TEST(deep_garbage)
+{
+    enum {
+        DEPTH = 200000
+    };
+    char *text = malloc(DEPTH + 1);
+    ck_assert_ptr_nonnull(text);
+    memset(text, '[', DEPTH);
+    text[DEPTH] = 0;
+    const char *path = scratch_path("deep.gltf");
+    write_text(path, text);
+    refused_file(path, RESULT_BAD_INPUT, "not glTF");
+    free(text);
+}
+END_TEST
+
+/* Every shortened copy of a .glb is refused; so is a .gltf without its external buffer. */
+START_TEST(truncated_files)
+{
+    Scene scene;
+    unsigned char *bytes;
+    size_t count;
+    const char *path = scratch_path("whole.glb"), *cut = scratch_path("cut.glb");
+    ck_assert_int_eq(generate_find("crossing_planes")->generate(&scene), RESULT_OK);
+    ck_assert_int_eq(gltf_write(&scene, path), RESULT_OK);
+    scene_free(&scene);
+    ck_assert_int_eq(gltf_file_read(path, &bytes, &count), RESULT_OK);
+    for (size_t length = 0; length < count; length += 97) {
+        FILE *file = fopen(cut, "wb");
+        ck_assert_uint_eq(fwrite(bytes, 1, length, file), length);
+        fclose(file);
+        refused_file(cut, RESULT_BAD_INPUT, "");
+    }
+    free(bytes);
+    path = scratch_path("external.gltf");
+    write_text(
+        path,
+        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"buffers\":[{\"byteLength\":36,\"uri\":\"none.bin\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+        "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
+    refused_file(path, RESULT_BAD_INPUT, "none.bin");
+    FILE *file = fopen(scratch_path("none.bin"), "wb");
+    fputs("short", file);
+    fclose(file);
+    refused_file(path, RESULT_BAD_INPUT, "none.bin is truncated: 5 bytes, expected 36");
+}
+END_TEST
+
+START_TEST(broken_geometry)
+{
+    float broken[24];
+    memcpy(broken, quad, sizeof broken);
+    broken[7] = NAN;
+    refused_file(write_quad(broken, QUAD_MESH "," ONE_NODE), RESULT_BAD_INPUT,
+                 "mesh 0 primitive 0: position 2 is not finite");
+    broken[7] = 1.0f;
+    broken[12] = INFINITY;
+    refused_file(write_quad(broken, QUAD_MESH "," ONE_NODE), RESULT_BAD_INPUT,
+                 "mesh 0 primitive 0: normal 0 is not finite");
+    /* The normals' bytes read as indices: far out of range. */
+    refused(
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":9}]}]," ONE_NODE,
+        RESULT_BAD_INPUT, "mesh 0: expected indices whose accessor exists");
+    refused("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":2}}]}]," ONE_NODE,
+            RESULT_BAD_INPUT, "accessor 2");
+    refused(
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":3}]}]," ONE_NODE,
+        RESULT_BAD_INPUT, "mesh 0: expected whole triangles");
+    refused("\"meshes\":[{\"primitives\":[]}]," ONE_NODE, RESULT_BAD_INPUT, "mesh 0");
+    refused("\"meshes\":[{\"primitives\":[{\"attributes\":{\"NORMAL\":1}}]}]," ONE_NODE,
+            RESULT_BAD_INPUT, "POSITION");
+    refused("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}]"
+            "," ONE_NODE,
+            RESULT_BAD_INPUT, "materials that exist");
+    refused(
+        "\"materials\":[{\"alphaMode\":\"GLASS\"}],\"meshes\":[{\"primitives\":[{\"attributes\":"
+        "{\"POSITION\":0},\"material\":0,\"indices\":2}]}]," ONE_NODE,
+        RESULT_BAD_INPUT, "alphaMode");
+}
+END_TEST
+
+/* Assimp drops such triangles behind a log line. */
+START_TEST(index_out_of_range)
+{
+    char text[2048];
+    size_t length = scratch_read(write_quad(quad, QUAD_MESH "," ONE_NODE), text, sizeof text);
+    const char *path = scratch_path("index.gltf");
+    /* The positions' count is 3: index 3 is out of range. */
+    char *count = strstr(text, "\"count\":4");
+    ck_assert(length < sizeof text - 1 && count);
+    count[8] = '3';
+    count = strstr(count, "\"count\":4"); /* the normals' */
+    count[8] = '3';
+    write_text(path, text);
+    refused_file(path, RESULT_BAD_INPUT,
+                 "mesh 0 primitive 0: 1 of 2 triangles have an index out of range");
+}
+END_TEST
+
+START_TEST(broken_nodes)
+{
+    refused(QUAD_MESH, RESULT_BAD_INPUT, "no scene to draw");
+    refused(QUAD_MESH ",\"scenes\":[{\"nodes\":[3]}],\"nodes\":[{\"mesh\":0}]", RESULT_BAD_INPUT,
+            "nodes that exist");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"children\":[0]}]",
+            RESULT_BAD_INPUT, "root nodes without a parent");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"children\":[1]},{\"children\":[0]}]",
+            RESULT_BAD_INPUT, "no cycle");
+    refused(QUAD_MESH ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1,1]},{\"mesh\":0}]",
+            RESULT_BAD_INPUT, "one parent");
+    refused(QUAD_MESH ",\"scenes\":[{\"nodes\":[0,0]}],\"nodes\":[{\"mesh\":0}]", RESULT_BAD_INPUT,
+            "each once");
+    refused(QUAD_MESH ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":1}]", RESULT_BAD_INPUT,
+            "node 0: expected a mesh that exists");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"matrix\":[1,0,0,1,0,1,0,0,"
+            "0,0,1,0,0,0,0,1]}]",
+            RESULT_BAD_INPUT, "affine");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[1e300,1,1]}]",
+            RESULT_BAD_INPUT, "node 0 (unnamed): expected a finite matrix");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"translation\":[1,2]}]",
+            RESULT_BAD_INPUT, "node 0");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"extras\":{\"ambient\":1}}]",
+            RESULT_BAD_INPUT, "three numbers");
+    refused(QUAD_MESH "," ONE_NODE ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]",
+            RESULT_UNSUPPORTED, "KHR_draco_mesh_compression");
+}
+END_TEST
+
+START_TEST(too_deep_a_graph)
+{
+    enum {
+        NODES = 2000
+    };
+    char *text = malloc(NODES * 32 + 256), *end = text;
+    ck_assert_ptr_nonnull(text);
+    end +=
+        sprintf(end, "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[");
+    for (int i = 0; i < NODES; i++)
+        end += sprintf(end, "{\"children\":[%d]},", i + 1);
+    sprintf(end, "{}]}");
+    const char *path = scratch_path("chain.gltf");
+    write_text(path, text);
+    refused_file(path, RESULT_BAD_INPUT, "depth");
+    free(text);
+}
+END_TEST
+
+/* ---- somebody else's files ------------------------------------------------------------------ */
+
+START_TEST(cylinder_engine)
+{
+    const char *path =
+        "/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb";
+    Scene scene;
+    uint64_t stored = 0;
+    load(path, &scene);
+    for (size_t i = 0; i < scene.mesh_count; i++)
+        stored += scene.meshes[i].triangle_count;
+    ck_assert_uint_eq(stored, 75730);
+    ck_assert_uint_eq(scene_triangle_count(&scene), 121496);
+    scene_free(&scene);
+}
+END_TEST
+
+/* Every sample of assimp-testmodels loads, or is refused with one line. */
+START_TEST(sample_models)
+{
+    FILE *list = popen("find /usr/share/assimp/models/glTF /usr/share/assimp/models/glTF2 "
+                       "-name '*.gl[bt]*' -type f",
+                       "r");
+    char path[512];
+    int files = 0, loaded = 0;
+    result_warnings_enable(false);
+    while (list && fgets(path, sizeof path, list)) {
+        Scene scene;
+        path[strcspn(path, "\n")] = 0;
+        Result result = gltf_load(path, &scene);
+        files++;
+        loaded += result == RESULT_OK;
+        if (result)
+            ck_assert_msg(strncmp(result_message(), path, strlen(path)) == 0 &&
+                              !strchr(result_message(), '\n'),
+                          "%s: \"%s\"", path, result_message());
+        scene_free(&scene);
+    }
+    result_warnings_enable(true);
+    ck_assert_int_eq(pclose(list), 0);
+    ck_assert_int_ge(files, 50);
+    ck_assert_int_ge(loaded, 30);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("gltf_bad");
+    TCase *test = tcase_create("gltf_bad");
+    tcase_set_timeout(test, 120);
+    tcase_add_checked_fixture(test, scratch_make, scratch_remove);
+    tcase_add_test(test, bad_files);
+    tcase_add_test(test, deep_garbage);
+    tcase_add_test(test, truncated_files);
+    tcase_add_test(test, broken_geometry);
+    tcase_add_test(test, index_out_of_range);
+    tcase_add_test(test, broken_nodes);
+    tcase_add_test(test, too_deep_a_graph);
+    tcase_add_test(test, cylinder_engine);
+    tcase_add_test(test, sample_models);
+    suite_add_tcase(suite, test);
+    return testing_run(suite);
+}
