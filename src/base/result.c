@@ -2,7 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 
 static _Thread_local char message[1024];
 static bool warnings = true;
@@ -28,16 +28,23 @@ const char *result_text(Result result)
     return "unknown result";
 }
 
-Result result_fail(Result code, const char *format, ...)
+/* The contract is one line whatever a file name or a library's text contains. */
+static void make_one_line(char *text)
 {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    /* The contract is one line whatever a file name or a library's text contains. */
-    for (char *c = message; *c; c++)
+    for (char *c = text; *c; c++)
         if (*c == '\n' || *c == '\r')
             *c = ' ';
+}
+
+Result result_fail(Result code, const char *format, ...)
+{
+    char text[sizeof message]; /* the arguments may hold the previous message */
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    make_one_line(text);
+    strcpy(message, text);
     return code;
 }
 
@@ -60,5 +67,6 @@ void result_warn(const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    make_one_line(text);
     fprintf(stderr, "peel: warning: %s\n", text);
 }

@@ -109,6 +109,8 @@ void metrics_final(const Image *a, const Image *b, FinalMetrics *out)
         out->rmse = sqrt(sum2 / values);
     }
     out->psnr = out->rmse > 0.0 ? -20.0 * log10(out->rmse) : INFINITY;
+    if (values == 0.0 && out->differing > 0)
+        out->psnr = NAN;
 }
 
 static int compare_doubles(const void *a, const void *b)

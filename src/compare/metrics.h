@@ -24,7 +24,7 @@ typedef struct FinalMetrics {
     uint64_t differing; /* pixels with any differing bit */
     uint64_t nonfinite; /* pixels where a or b is NaN or infinite: left out of the averages */
     double max_abs, mean_abs, rmse; /* over channel values */
-    double psnr;                    /* dB for peak 1; INFINITY when equal */
+    double psnr; /* dB for peak 1; INFINITY when equal, NaN when no pixel is finite */
     uint32_t max_ulp;
 } FinalMetrics;
 

@@ -159,7 +159,9 @@ static bool judge(const Threeway *report)
     for (size_t i = 0; i < ref_gl->buffer_count; i++)
         if (ref_gl->buffers[i].differing > 0)
             return false;
-    return ref_truth->unaffected.p99_rel <= report->tolerance && ref_truth->final.nonfinite == 0;
+    /* Without a pixel to compare there is no agreement to speak of. */
+    return ref_truth->unaffected.pixels > 0 && ref_truth->unaffected.p99_rel <= report->tolerance &&
+           ref_truth->final.nonfinite == 0;
 }
 
 /* ---- pictures of the peels ---- */
