@@ -5,7 +5,8 @@
 
 void *memory_array(size_t count, size_t size)
 {
-    void *array = calloc(count ? count : 1, size);
+    bool fits = size == 0 || count <= (size_t)PTRDIFF_MAX / size;
+    void *array = fits ? calloc(count ? count : 1, size) : NULL;
     if (!array)
         result_fail(RESULT_NO_MEMORY, "out of memory: %zu elements of %zu bytes", count, size);
     return array;

@@ -78,6 +78,9 @@ static Result check(const Scene *scene, const RenderDesc *desc)
     if (desc->camera < 0 || (size_t)desc->camera >= scene->camera_count)
         return result_fail(RESULT_BAD_INPUT, "camera %d: the scene has %zu", desc->camera,
                            scene->camera_count);
+    if (desc->accum != FORMAT_RGBA32F && desc->accum != FORMAT_RGBA16)
+        return result_fail(RESULT_BAD_INPUT, "accumulation in %s: expected rgba32f or rgba16",
+                           format_info(desc->accum)->name);
     if (!isfinite(desc->time) || fabs(desc->time) > 1e6)
         return result_fail(RESULT_BAD_INPUT, "time %g: expected at most 1e6 seconds", desc->time);
     if (scene_triangle_count(scene) >= UINT32_MAX)

@@ -35,7 +35,8 @@ typedef struct View {
     float ambient[3], background[3];
 } View;
 
-/* Fails with BAD_INPUT when desc names no camera of the scene or no valid size. */
+/* Fails with BAD_INPUT when desc names no camera of the scene, or a size, pass limit, time or
+ * accumulation format out of range. */
 Result view_build(const Scene *scene, const RenderDesc *desc, View *out);
 void view_free(View *view);
 

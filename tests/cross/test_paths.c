@@ -413,6 +413,40 @@ START_TEST(test_trace_failure)
 }
 END_TEST
 
+/* Of fragments at one depth LESS keeps the earlier triangle of the scene and LEQUAL the later; the
+ * other is lost. A transparent fragment at the opaque depth is hidden. */
+START_TEST(test_ties)
+{
+    static Soup soup;
+    for (int func = DEPTH_LESS; func <= DEPTH_LEQUAL; func++) {
+        Random random = random_seed(1);
+        soup_make(&random, &soup);
+        soup.camera.yfov = 1.0;
+        add_square(&soup, 0, 2.0, -1, 1); /* triangles 0 and 1 */
+        add_square(&soup, 1, 2.0, -1, 1);
+        add_square(&soup, 2, 3.0, -1, 1); /* 4 and 5: behind the others, at the opaque depth */
+        add_square(&soup, 3, 3.0, -1, 1);
+        soup.instances[3].material = 0;
+        RenderDesc desc = {.width = 192, .height = 20, .depth_func = (DepthFunc)func};
+        Frame frame;
+        Recorder *recorder = recorder_make(-1);
+        render(&soup.scene, desc, REF_PATH_AUTO, &recorder->sink, &frame);
+        int at = 0;
+        Traced opaque = expect_gbuffer(recorder, &at, "opaque", 0, &desc);
+        Traced peel = expect_gbuffer(recorder, &at, "peel.0", 1, &desc);
+        for (size_t i = 0; i < 192 * 20; i++) {
+            ck_assert_uint_eq(word_at(opaque.primitive, i) / 2, 3);
+            ck_assert_uint_eq(word_at(peel.primitive, i) / 2, func == DEPTH_LESS ? 0 : 1);
+        }
+        ck_assert_int_eq(frame.peels, 1);
+        ck_assert_uint_eq(frame.layers.max, 2);
+        ck_assert_uint_eq(frame.layers.lost_to_ties, 192 * 20);
+        recorder_free(recorder);
+        frame_free(&frame);
+    }
+}
+END_TEST
+
 /* ---- small things
  * --------------------------------------------------------------------------------
  */
@@ -462,6 +496,7 @@ int main(void)
     tcase_add_test(tcase, test_raw_test_loses_close_layers);
     tcase_add_test(tcase, test_trace);
     tcase_add_test(tcase, test_trace_failure);
+    tcase_add_test(tcase, test_ties);
     tcase_add_test(tcase, test_empty);
     tcase_add_test(tcase, test_limits);
     suite_add_tcase(suite, tcase);
