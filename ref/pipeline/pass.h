@@ -42,27 +42,39 @@ PixelRect pass_tile_rect(const Pass *pass, uint32_t tile);
 
 void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out);
 
-/* Whether a transparent fragment at depth z (stored: key) is behind the stored opaque depth. */
-static inline bool pass_hidden(const Pass *pass, float z, uint32_t key, uint32_t opaque)
+/* A fragment's depth as computed (gl_FragCoord.z) and as stored (depth_key). */
+typedef struct FragmentDepth {
+    float z;
+    uint32_t key;
+} FragmentDepth;
+
+static inline FragmentDepth pass_fragment_depth(const Pass *pass, const Setup *setup, int x, int y)
+{
+    float z = setup_depth_at(pass->fused, setup, x, y);
+    return (FragmentDepth){z, depth_key(pass->depth_format, z)};
+}
+
+/* Whether a transparent fragment is behind the stored opaque depth. */
+static inline bool pass_hidden(const Pass *pass, FragmentDepth depth, uint32_t opaque)
 {
     if (pass->desc->peel_test == PEEL_TEST_RAW)
-        return z >= depth_fetch(pass->depth_format, opaque);
-    return key >= opaque;
+        return depth.z >= depth_fetch(pass->depth_format, opaque);
+    return depth.key >= opaque;
 }
 
 /* Whether an earlier peel took it, or the layer in front of it. */
-static inline bool pass_peeled(const Pass *pass, float z, uint32_t key, uint32_t previous)
+static inline bool pass_peeled(const Pass *pass, FragmentDepth depth, uint32_t previous)
 {
     if (pass->desc->peel_test == PEEL_TEST_RAW)
-        return z <= depth_fetch(pass->depth_format, previous);
-    return key <= previous;
+        return depth.z <= depth_fetch(pass->depth_format, previous);
+    return depth.key <= previous;
 }
 
 /* Whether further peels would have come to it: behind the previous layer, and not discarded with
  * it by the raw test, which cannot tell two 24-bit depths apart where a fetch rounds up. */
-static inline bool pass_remains(const Pass *pass, float z, uint32_t key, uint32_t previous)
+static inline bool pass_remains(const Pass *pass, FragmentDepth depth, uint32_t previous)
 {
-    return key > previous && !pass_peeled(pass, z, key, previous);
+    return depth.key > previous && !pass_peeled(pass, depth, previous);
 }
 
 static inline bool pass_depth_test(const Pass *pass, uint32_t key, uint32_t stored)

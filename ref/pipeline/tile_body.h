@@ -58,17 +58,21 @@ static int local_index(const TilePass *tile, int x, int y)
     return (y - tile->rect.y0) * TILE + (x - tile->rect.x0);
 }
 
+static inline void keep_nearest(TilePass *tile, int pixel, FragmentDepth depth)
+{
+    if (!pass_depth_test(tile->pass, depth.key, tile->key[pixel]))
+        return;
+    tile->key[pixel] = depth.key;
+    tile->index[pixel] = tile->primitive;
+}
+
 static void visit_opaque(void *context, const Setup *setup, int x, int y)
 {
     TilePass *tile = context;
     const Pass *pass = tile->pass;
     int pixel = local_index(tile, x, y);
-    float z = setup_depth_at(pass->fused, setup, x, y);
-    uint32_t key = depth_key(pass->depth_format, z);
-    if (pass_depth_test(pass, key, tile->key[pixel])) {
-        tile->key[pixel] = key;
-        tile->index[pixel] = tile->primitive;
-    }
+    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
+    keep_nearest(tile, pixel, depth);
 }
 
 static void visit_transparent(void *context, const Setup *setup, int x, int y)
@@ -76,18 +80,14 @@ static void visit_transparent(void *context, const Setup *setup, int x, int y)
     TilePass *tile = context;
     const Pass *pass = tile->pass;
     int pixel = local_index(tile, x, y);
-    float z = setup_depth_at(pass->fused, setup, x, y);
-    uint32_t key = depth_key(pass->depth_format, z);
-    if (pass_hidden(pass, z, key, tile->scratch->opaque_key[pixel]))
+    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
+    if (pass_hidden(pass, depth, tile->scratch->opaque_key[pixel]))
         return;
     if (!tile->previous)
         tile->scratch->fragments[pixel]++;
-    else if (pass_peeled(pass, z, key, tile->previous[pixel]))
+    else if (pass_peeled(pass, depth, tile->previous[pixel]))
         return;
-    if (pass_depth_test(pass, key, tile->key[pixel])) {
-        tile->key[pixel] = key;
-        tile->index[pixel] = tile->primitive;
-    }
+    keep_nearest(tile, pixel, depth);
 }
 
 static void visit_remaining(void *context, const Setup *setup, int x, int y)
@@ -95,10 +95,9 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
     TilePass *tile = context;
     const Pass *pass = tile->pass;
     int pixel = local_index(tile, x, y);
-    float z = setup_depth_at(pass->fused, setup, x, y);
-    uint32_t key = depth_key(pass->depth_format, z);
-    if (!pass_hidden(pass, z, key, tile->scratch->opaque_key[pixel]) &&
-        pass_remains(pass, z, key, tile->previous[pixel]))
+    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
+    if (!pass_hidden(pass, depth, tile->scratch->opaque_key[pixel]) &&
+        pass_remains(pass, depth, tile->previous[pixel]))
         tile->scratch->remaining[pixel]++;
 }
 

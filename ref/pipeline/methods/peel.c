@@ -18,7 +18,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef struct Peel {
+typedef struct Peel Peel;
+typedef void (*TileFunction)(Peel *state, uint32_t tile);
+
+struct Peel {
     const Pass *pass;
     GBuffer opaque, layer; /* layer.depth is the current peel's */
     Image previous_depth;  /* the other of the two depth buffers */
@@ -28,7 +31,8 @@ typedef struct Peel {
     PassCounts *tile_counts;
     int peel; /* −1 during the opaque pass */
     Frame *frame;
-} Peel;
+    TileFunction function; /* of the pass that runs */
+};
 
 /* ---- geometry pass ---- */
 
@@ -54,20 +58,19 @@ static void visit_fragment(void *context, const Setup *setup, int x, int y)
     Peel *state = visit->state;
     const Pass *pass = state->pass;
     size_t pixel = pixel_index(pass, x, y);
-    float z = setup_depth_at(pass->fused, setup, x, y);
-    uint32_t key = depth_key(pass->depth_format, z);
+    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
     if (state->peel >= 0) {
-        if (pass_hidden(pass, z, key, key_at(&state->opaque.depth, pixel)))
+        if (pass_hidden(pass, depth, key_at(&state->opaque.depth, pixel)))
             return;
         if (state->peel == 0)
             state->fragments[pixel]++;
-        else if (pass_peeled(pass, z, key, key_at(&state->previous_depth, pixel)))
+        else if (pass_peeled(pass, depth, key_at(&state->previous_depth, pixel)))
             return;
     }
     uint32_t *stored = (uint32_t *)visit->target->depth.pixels + pixel;
-    if (!pass_depth_test(pass, key, *stored))
+    if (!pass_depth_test(pass, depth.key, *stored))
         return;
-    *stored = key;
+    *stored = depth.key;
     ((uint32_t *)visit->target->primitive.pixels)[pixel] = visit->primitive->id;
     Texel texel;
     fragment_shade(pass, setup, visit->primitive, x, y, &texel);
@@ -104,7 +107,7 @@ static void count_drawn(Peel *state, uint32_t tile)
         }
 }
 
-static __attribute__((noinline)) void geometry_tile(Peel *state, uint32_t tile)
+static void geometry_tile(Peel *state, uint32_t tile)
 {
     const Pass *pass = state->pass;
     bool opaque = state->peel < 0;
@@ -118,18 +121,9 @@ static __attribute__((noinline)) void geometry_tile(Peel *state, uint32_t tile)
     count_drawn(state, tile);
 }
 
-static Result geometry_task(void *context, uint32_t tile, int worker)
-{
-    (void)worker;
-    uint32_t saved = op_enter();
-    geometry_tile(context, tile);
-    op_leave(saved);
-    return RESULT_OK;
-}
-
 /* ---- lighting pass ---- */
 
-static __attribute__((noinline)) void lighting_tile(Peel *state, uint32_t tile)
+static void lighting_tile(Peel *state, uint32_t tile)
 {
     const Pass *pass = state->pass;
     bool opaque = state->peel < 0;
@@ -152,15 +146,6 @@ static __attribute__((noinline)) void lighting_tile(Peel *state, uint32_t tile)
         }
 }
 
-static Result lighting_task(void *context, uint32_t tile, int worker)
-{
-    (void)worker;
-    uint32_t saved = op_enter();
-    lighting_tile(context, tile);
-    op_leave(saved);
-    return RESULT_OK;
-}
-
 /* ---- what a pass limit left behind ---- */
 
 static void visit_remaining(void *context, const Setup *setup, int x, int y)
@@ -169,15 +154,14 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
     Peel *state = visit->state;
     const Pass *pass = state->pass;
     size_t pixel = pixel_index(pass, x, y);
-    float z = setup_depth_at(pass->fused, setup, x, y);
-    uint32_t key = depth_key(pass->depth_format, z);
+    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
     uint32_t previous = key_at(&state->previous_depth, pixel);
-    if (!pass_hidden(pass, z, key, key_at(&state->opaque.depth, pixel)) &&
-        pass_remains(pass, z, key, previous))
+    if (!pass_hidden(pass, depth, key_at(&state->opaque.depth, pixel)) &&
+        pass_remains(pass, depth, previous))
         state->remaining[pixel]++;
 }
 
-static __attribute__((noinline)) void remaining_tile(Peel *state, uint32_t tile)
+static void remaining_tile(Peel *state, uint32_t tile)
 {
     const Pass *pass = state->pass;
     TileVisit visit = {.state = state};
@@ -194,15 +178,6 @@ static __attribute__((noinline)) void remaining_tile(Peel *state, uint32_t tile)
         }
 }
 
-static Result remaining_task(void *context, uint32_t tile, int worker)
-{
-    (void)worker;
-    uint32_t saved = op_enter();
-    remaining_tile(context, tile);
-    op_leave(saved);
-    return RESULT_OK;
-}
-
 /* ---- resolve ---- */
 
 static void resolve_pixel(Peel *state, int x, int row)
@@ -216,7 +191,7 @@ static void resolve_pixel(Peel *state, int x, int row)
     shade_display(pass->fused, final, image_pixel(&state->frame->display, x, row));
 }
 
-static __attribute__((noinline)) void resolve_tile(Peel *state, uint32_t tile)
+static void resolve_tile(Peel *state, uint32_t tile)
 {
     PixelRect rect = pass_tile_rect(state->pass, tile);
     for (int y = rect.y0; y <= rect.y1; y++)
@@ -225,15 +200,6 @@ static __attribute__((noinline)) void resolve_tile(Peel *state, uint32_t tile)
             pass_count_fragments(&state->tile_counts[tile],
                                  state->fragments[pixel_index(state->pass, x, y)]);
         }
-}
-
-static Result resolve_task(void *context, uint32_t tile, int worker)
-{
-    (void)worker;
-    uint32_t saved = op_enter();
-    resolve_tile(context, tile);
-    op_leave(saved);
-    return RESULT_OK;
 }
 
 /* ---- the frame ---- */
@@ -253,9 +219,21 @@ static PassCounts total(const Peel *state)
     return sum;
 }
 
-static Result run(Peel *state, PoolTask task)
+static Result tile_task(void *context, uint32_t tile, int worker)
 {
-    return pool_run(state->pass->pool, state->pass->tile_count, task, state);
+    Peel *state = context;
+    (void)worker;
+    uint32_t saved = op_enter();
+    state->function(state, tile);
+    op_leave(saved);
+    return RESULT_OK;
+}
+
+/* One pass: the function for every tile, on all threads. */
+static Result run(Peel *state, TileFunction function)
+{
+    state->function = function;
+    return pool_run(state->pass->pool, state->pass->tile_count, tile_task, state);
 }
 
 /* One buffer under "opaque.<what>" or "peel.K.<what>". */
@@ -292,7 +270,7 @@ static Result draw_peel(Peel *state, bool *stop)
     const RenderDesc *desc = state->pass->desc;
     PassCounts before = total(state);
     gbuffer_clear(&state->layer);
-    Result result = run(state, geometry_task);
+    Result result = run(state, geometry_tile);
     PassCounts after = total(state);
     uint64_t drawn = after.peeled - before.peeled, repeated = after.repeated - before.repeated;
     bool stale = desc->passes == 0 && desc->peel_test == PEEL_TEST_RAW && repeated == drawn;
@@ -317,7 +295,7 @@ static Result peels(Peel *state, TraceSink *trace)
             break;
         result = put_gbuffer(state, trace, &state->layer);
         if (result == RESULT_OK)
-            result = run(state, lighting_task);
+            result = run(state, lighting_tile);
         if (result == RESULT_OK)
             result = put(state, trace, "accum", &state->accum);
         if (result != RESULT_OK)
@@ -327,7 +305,7 @@ static Result peels(Peel *state, TraceSink *trace)
         state->previous_depth = current;
         state->frame->peels = state->peel + 1;
     }
-    return pass_may_leave(state->pass, state->frame->peels, limit) ? run(state, remaining_task)
+    return pass_may_leave(state->pass, state->frame->peels, limit) ? run(state, remaining_tile)
                                                                    : RESULT_OK;
 }
 
@@ -335,21 +313,21 @@ static Result render(Peel *state, TraceSink *trace)
 {
     clear_accum(&state->accum);
     state->peel = -1;
-    Result result = run(state, geometry_task);
+    Result result = run(state, geometry_tile);
     if (result == RESULT_OK)
         result = put_gbuffer(state, trace, &state->opaque);
     if (result == RESULT_OK)
         result = peels(state, trace);
     state->peel = -1;
     if (result == RESULT_OK)
-        result = run(state, lighting_task);
+        result = run(state, lighting_tile);
     int step = state->frame->peels + 1;
     const Image *accum = &state->accum, *display = &state->frame->display;
     if (result == RESULT_OK)
         result = trace_put(trace, "accum", step, accum->format, accum->width, accum->height,
                            accum->pixels);
     if (result == RESULT_OK)
-        result = run(state, resolve_task);
+        result = run(state, resolve_tile);
     if (result == RESULT_OK)
         result = trace_put(trace, "display", step + 1, display->format, display->width,
                            display->height, display->pixels);
