@@ -8,7 +8,7 @@ typedef struct TileVariant {
 static TileVariant variant(SimdChoice simd)
 {
     switch (simd) {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(PEEL_SOFTWARE_FLUSH)
     case SIMD_SSE2:
         return (TileVariant){tile_render_sse2, true};
     case SIMD_AVX2:

@@ -2,7 +2,7 @@
  *
  * Define LANES before including; a file that includes this is compiled once per width from one
  * body. Every lane has the bits of the scalar operation, so a width changes speed and nothing
- * else (tests/unit/test_lanes.c). The flushing mode is the processor's: see op_enter. */
+ * else (tests/cross/test_paths.c). The flushing mode is the processor's: see op_enter. */
 #ifndef PEEL_NUMBER_LANES_H
 #define PEEL_NUMBER_LANES_H
 

@@ -37,7 +37,9 @@ const char *summary_ulp(uint32_t value, char out[SUMMARY_NUMBER])
 
 const char *summary_psnr(double value, char out[SUMMARY_NUMBER])
 {
-    if (isinf(value) && value > 0)
+    if (isnan(value)) /* no pixel is finite on both sides */
+        snprintf(out, SUMMARY_NUMBER, "none");
+    else if (isinf(value) && value > 0)
         snprintf(out, SUMMARY_NUMBER, "equal");
     else
         snprintf(out, SUMMARY_NUMBER, "%.1f dB", value);

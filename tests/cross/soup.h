@@ -131,4 +131,30 @@ static inline void soup_make(Random *random, Soup *soup)
         soup->scene.background[c] = (float)random_unit(random);
 }
 
+/* Makes mesh and instance `index`, the scene's last, a transparent square facing the eye at view
+ * depth `depth`, over x0 … x1 of the width [−1, 1] of a window of 192 × 20 pixels whose vertical
+ * field of view is 1 radian. */
+static inline void soup_square(Soup *soup, uint32_t index, double depth, double x0, double x1)
+{
+    double half = depth * 0.5463024898437905; /* tan(0.5) */
+    const double x[4] = {x0, x1, x1, x0}, y[4] = {-1, -1, 1, 1};
+    static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3};
+    Mesh *mesh = &soup->meshes[index];
+    *mesh = (Mesh){.vertex_count = 4,
+                   .triangle_count = 2,
+                   .position = soup->position[index],
+                   .normal = soup->normal[index],
+                   .index = soup->index[index]};
+    for (int i = 0; i < 4; i++) {
+        mesh->position[3 * i] = (float)(half * 9.6 * x[i]);
+        mesh->position[3 * i + 1] = (float)(half * y[i]);
+        mesh->position[3 * i + 2] = (float)-depth;
+        mesh->normal[3 * i + 2] = 1.0f;
+    }
+    memcpy(mesh->index, corners, sizeof corners);
+    soup->instances[index] =
+        (Instance){.name = "", .mesh = index, .material = 2, .world = matrix_identity()};
+    soup->scene.instance_count = soup->scene.mesh_count = index + 1;
+}
+
 #endif

@@ -138,31 +138,6 @@ END_TEST
 /* ---- layers closer than the raw test can tell -------------------------------------------------
  */
 
-/* A square in front of the eye at view depth `depth`, over x0 … x1 of the
- * window's width [−1, 1], which is 9.6 times its height. */
-static void add_square(Soup *soup, uint32_t index, double depth, double x0, double x1)
-{
-    double half = depth * 0.5463024898437905; /* tan(0.5) */
-    const double x[4] = {x0, x1, x1, x0}, y[4] = {-1, -1, 1, 1};
-    static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3};
-    Mesh *mesh = &soup->meshes[index];
-    *mesh = (Mesh){.vertex_count = 4,
-                   .triangle_count = 2,
-                   .position = soup->position[index],
-                   .normal = soup->normal[index],
-                   .index = soup->index[index]};
-    for (int i = 0; i < 4; i++) {
-        mesh->position[3 * i] = (float)(half * 9.6 * x[i]);
-        mesh->position[3 * i + 1] = (float)(half * y[i]);
-        mesh->position[3 * i + 2] = (float)-depth;
-        mesh->normal[3 * i + 2] = 1.0f;
-    }
-    memcpy(mesh->index, corners, sizeof corners);
-    soup->instances[index] =
-        (Instance){.name = "", .mesh = index, .material = 2, .world = matrix_identity()};
-    soup->scene.instance_count = soup->scene.mesh_count = index + 1;
-}
-
 /* With 24-bit depth and the raw test a layer one code behind another is discarded with it. A tile
  * that such a layer ends must count it as the frame does, however deep other tiles are. */
 START_TEST(test_raw_test_loses_close_layers)
@@ -175,10 +150,10 @@ START_TEST(test_raw_test_loses_close_layers)
         soup.camera.yfov = 1.0;
         soup.camera.near = 1.0;
         soup.camera.far = 100.0;
-        add_square(&soup, 0, 5.0, -1, 0);
-        add_square(&soup, 1, 5.0 + step * 0x1p-20, -1, 0);
+        soup_square(&soup, 0, 5.0, -1, 0);
+        soup_square(&soup, 1, 5.0 + step * 0x1p-20, -1, 0);
         for (uint32_t i = 2; i < 5; i++)
-            add_square(&soup, i, 5.0 + i, 0, 1);
+            soup_square(&soup, i, 5.0 + i, 0, 1);
         RenderDesc desc = {.width = 192,
                            .height = 20,
                            .depth = FORMAT_D24,
@@ -422,10 +397,10 @@ START_TEST(test_ties)
         Random random = random_seed(1);
         soup_make(&random, &soup);
         soup.camera.yfov = 1.0;
-        add_square(&soup, 0, 2.0, -1, 1); /* triangles 0 and 1 */
-        add_square(&soup, 1, 2.0, -1, 1);
-        add_square(&soup, 2, 3.0, -1, 1); /* 4 and 5: behind the others, at the opaque depth */
-        add_square(&soup, 3, 3.0, -1, 1);
+        soup_square(&soup, 0, 2.0, -1, 1); /* triangles 0 and 1 */
+        soup_square(&soup, 1, 2.0, -1, 1);
+        soup_square(&soup, 2, 3.0, -1, 1); /* 4 and 5: behind the others, at the opaque depth */
+        soup_square(&soup, 3, 3.0, -1, 1);
         soup.instances[3].material = 0;
         RenderDesc desc = {.width = 192, .height = 20, .depth_func = (DepthFunc)func};
         Frame frame;

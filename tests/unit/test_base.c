@@ -10,6 +10,7 @@
 
 #include <fcntl.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -214,6 +215,32 @@ START_TEST(test_pool_failure)
 }
 END_TEST
 
+/* Task 1 fails first, task 0 after it: the message is that of the lower index all the same. */
+static Result late_task(void *context, uint32_t index, int worker)
+{
+    atomic_bool *failed = context;
+    (void)worker;
+    while (index == 0 && !atomic_load(failed))
+        sched_yield();
+    if (index == 0)
+        usleep(1000); /* task 1 is about to be recorded */
+    Result result = result_fail(index ? RESULT_BAD_INPUT : RESULT_IO, "task %u", index);
+    atomic_store(failed, true);
+    return result;
+}
+
+START_TEST(test_pool_lowest_failure)
+{
+    Pool *pool = pool_create(2);
+    for (int round = 0; round < 20; round++) {
+        atomic_bool failed = false;
+        ck_assert_int_eq(pool_run(pool, 2, late_task, &failed), RESULT_IO);
+        ck_assert_str_eq(result_message(), "task 0");
+    }
+    pool_destroy(pool);
+}
+END_TEST
+
 START_TEST(test_pool_default)
 {
     Pool *pool = pool_create(0);
@@ -265,6 +292,7 @@ int main(void)
     tcase_add_test(tcase, test_memory_grow);
     tcase_add_loop_test(tcase, test_pool_runs_each_once, 1, 9);
     tcase_add_loop_test(tcase, test_pool_failure, 1, 9);
+    tcase_add_test(tcase, test_pool_lowest_failure);
     tcase_add_test(tcase, test_pool_default);
     tcase_add_test(tcase, test_random);
     tcase_add_test(tcase, test_clock);

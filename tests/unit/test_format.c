@@ -47,6 +47,23 @@ START_TEST(test_unorm_round_trip)
 }
 END_TEST
 
+/* A fetch multiplies by the rounded 1/max; a division gives other bits for this many codes. */
+START_TEST(test_unorm_fetch_is_no_division)
+{
+    int differing8 = 0, differing16 = 0;
+    for (uint32_t i = 0; i < 65536; i++) {
+        float product = op_mul((float)i, 0x1.0001p-16f), fetched = unorm16_to_float((uint16_t)i);
+        if (op_bits(fetched) != op_bits(product))
+            ck_abort_msg("unorm16 %u: fetched %a, expected %a", i, (double)fetched,
+                         (double)product);
+        differing16 += fetched != op_div((float)i, 65535.0f);
+        differing8 += i < 256 && unorm8_to_float((uint8_t)i) != op_div((float)i, 255.0f);
+    }
+    ck_assert_int_eq(differing8, 126);
+    ck_assert_int_eq(differing16, 512);
+}
+END_TEST
+
 START_TEST(test_depth24_codes)
 {
     uint32_t changed = 0;
@@ -220,6 +237,7 @@ int main(void)
     tcase_add_checked_fixture(tcase, enter_mode, leave_mode);
     tcase_set_timeout(tcase, 300);
     tcase_add_test(tcase, test_unorm_round_trip);
+    tcase_add_test(tcase, test_unorm_fetch_is_no_division);
     tcase_add_test(tcase, test_depth24_codes);
     tcase_add_test(tcase, test_unorm_rounding);
     tcase_add_test(tcase, test_half_round_trip);
