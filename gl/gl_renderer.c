@@ -1,18 +1,12 @@
 #include "gl_renderer.h"
 
+#include "base/clock.h"
 #include "fuses.h"
 #include "methods/peel.h"
+#include "number/op.h"
 #include "readback.h"
 
 #include <stdio.h>
-#include <time.h>
-
-static double clock_ms(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
 
 static Result read_result(Passes *passes, TraceSink *trace, Frame *out)
 {
@@ -40,8 +34,15 @@ static void describe_driver(Frame *out)
     out->threads = context_threads();
 }
 
-static Result render_in(Context *context, const Scene *scene, const RenderDesc *desc,
-                        const View *view, TraceSink *trace, Frame *out)
+/* One row per method: see frame/method.h. */
+static Result (*const methods[METHOD_COUNT])(Passes *passes, TraceSink *trace, Frame *out) = {
+    [METHOD_PEEL] = gl_peel,
+};
+
+/* Not inlined: see op_enter. */
+static __attribute__((noinline)) Result render_in(Context *context, const Scene *scene,
+                                                  const RenderDesc *desc, const View *view,
+                                                  TraceSink *trace, Frame *out)
 {
     describe_driver(out);
     FusesMode mode;
@@ -52,20 +53,19 @@ static Result render_in(Context *context, const Scene *scene, const RenderDesc *
         result_warn("%s does not interpolate as llvmpipe does: its bits will differ from ref's",
                     out->renderer);
     out->fused = mode == FUSES_YES;
-    double wall_ms = clock_ms(CLOCK_MONOTONIC), cpu_ms = clock_ms(CLOCK_PROCESS_CPUTIME_ID);
+    Clock start = clock_now();
     Passes passes;
     result = passes_create(context, scene, desc, view, &passes);
     if (result != RESULT_OK)
         return result;
-    result = gl_peel(&passes, trace, out);
+    result = methods[desc->method](&passes, trace, out);
     if (result == RESULT_OK) {
         passes_resolve(&passes);
         result = read_result(&passes, trace, out);
     }
     out->buffer_bytes = passes.targets.bytes + passes.meshes.bytes + passes.lights.bytes;
     passes_destroy(&passes);
-    out->time_ms = clock_ms(CLOCK_MONOTONIC) - wall_ms;
-    out->cpu_ms = clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu_ms;
+    clock_elapsed(&start, &out->time_ms, &out->cpu_ms);
     return result;
 }
 
@@ -79,7 +79,11 @@ Result gl_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, F
     Context *context;
     result = context_open(desc->threads, &context);
     if (result == RESULT_OK) {
+        /* Triangles of a batch that needed clipping are set up in the calling thread, where Mesa
+         * does not itself flush denormals as its own threads do. */
+        uint32_t saved = op_enter();
         result = render_in(context, scene, desc, &view, trace, out);
+        op_leave(saved);
         context_close(context);
     }
     view_free(&view);
@@ -88,10 +92,10 @@ Result gl_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, F
     return result;
 }
 
-Result gl_driver_fuses(bool *fused)
+Result gl_driver_fuses(int threads, bool *fused)
 {
     Context *context;
-    Result result = context_open(0, &context);
+    Result result = context_open(threads, &context);
     if (result != RESULT_OK)
         return result;
     FusesMode mode;

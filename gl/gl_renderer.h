@@ -11,7 +11,8 @@
  * read-back, compiling shaders included, making the context not. */
 Result gl_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out);
 
-/* Finds out, by rendering, whether the driver fuses multiply-adds in fixed-function code. */
-Result gl_driver_fuses(bool *fused);
+/* Finds out, by rendering, whether the driver fuses multiply-adds in fixed-function code. threads:
+ * as in RenderDesc, for the process's first context decides it. */
+Result gl_driver_fuses(int threads, bool *fused);
 
 #endif

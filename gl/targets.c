@@ -18,13 +18,13 @@ static const GLenum internal_formats[FORMAT_COUNT] = {
 
 static void choose_formats(const RenderDesc *desc, Targets *out)
 {
-    bool seed = desc->gbuffer == GBUFFER_SEED;
+    GBufferLayout layout = gbuffer_layout(desc->gbuffer);
     out->depth_format = render_desc_depth(desc);
     out->accum_format = desc->accum;
-    out->color_format[GBUFFER_NORMAL] = FORMAT_RGBA32F;
-    out->color_format[GBUFFER_POSITION] = seed ? FORMAT_RGBA16F : FORMAT_RGBA32F;
-    out->color_format[GBUFFER_DIFFUSE] = seed ? FORMAT_RGBA8 : FORMAT_RGBA32F;
-    out->color_format[GBUFFER_MATERIAL] = seed ? FORMAT_RGBA8 : FORMAT_RGBA32F;
+    out->color_format[GBUFFER_NORMAL] = layout.normal;
+    out->color_format[GBUFFER_POSITION] = layout.position;
+    out->color_format[GBUFFER_DIFFUSE] = layout.diffuse;
+    out->color_format[GBUFFER_MATERIAL] = layout.material;
 }
 
 /* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float. */
@@ -58,11 +58,11 @@ static Result check_limits(const Context *context, const RenderDesc *desc, size_
     if (limits->draw_buffers < GBUFFER_TARGETS)
         return result_fail(RESULT_NO_GL, "OpenGL: %d draw buffers expected, the driver has %d",
                            (int)GBUFFER_TARGETS, limits->draw_buffers);
-    size_t most = desc->max_memory ? desc->max_memory : (size_t)4 << 30;
+    size_t most = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
     if (bytes > most)
         return result_fail(RESULT_NO_MEMORY,
-                           "size %dx%d: OpenGL buffers need %zu MiB, the limit is %zu MiB",
-                           desc->width, desc->height, bytes >> 20, most >> 20);
+                           "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
+                           desc->width, desc->height, bytes >> 10, most >> 10);
     return RESULT_OK;
 }
 

@@ -7,7 +7,7 @@
 #include "methods/peel.h"
 
 #include "base/memory.h"
-#include "number/op.h"
+#include "base/progress.h"
 #include "readback.h"
 
 #include <stdlib.h>
@@ -82,6 +82,7 @@ static Result run_peel(Passes *passes, int peel, TraceSink *trace, Scratch *scra
 {
     uint64_t samples = 0;
     *more = false;
+    progress_add();
     Result result = passes_peel_geometry(passes, peel, &samples);
     if (result != RESULT_OK || samples == 0)
         return result;

@@ -1,12 +1,5 @@
 #include "ref/pipeline/buffers.h"
 
-GBufferLayout gbuffer_layout(GBufferFormat format)
-{
-    if (format == GBUFFER_SEED)
-        return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA8, FORMAT_RGBA8};
-    return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F};
-}
-
 Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth, GBuffer *out)
 {
     GBufferLayout layout = gbuffer_layout(format);
@@ -43,7 +36,7 @@ void gbuffer_free(GBuffer *buffers)
     image_free(&buffers->primitive);
 }
 
-static void clear_colour(Image *image)
+static void clear_color(Image *image)
 {
     memset(image->pixels, 0,
            (size_t)image->width * (size_t)image->height * format_pixel_bytes(image->format));
@@ -51,10 +44,10 @@ static void clear_colour(Image *image)
 
 void gbuffer_clear(GBuffer *buffers)
 {
-    clear_colour(&buffers->normal);
-    clear_colour(&buffers->position);
-    clear_colour(&buffers->diffuse);
-    clear_colour(&buffers->material);
+    clear_color(&buffers->normal);
+    clear_color(&buffers->position);
+    clear_color(&buffers->diffuse);
+    clear_color(&buffers->material);
     size_t pixels = (size_t)buffers->depth.width * (size_t)buffers->depth.height;
     uint32_t far = depth_key_far(buffers->depth.format);
     uint32_t *depth = buffers->depth.pixels;

@@ -13,12 +13,6 @@ typedef struct Texel {
     float normal[4], position[4], diffuse[4], material[4];
 } Texel;
 
-typedef struct GBufferLayout {
-    PixelFormat normal, position, diffuse, material;
-} GBufferLayout;
-
-GBufferLayout gbuffer_layout(GBufferFormat format);
-
 /* A full-size G-buffer with its depth; primitive ids beside it are for statistics only. */
 typedef struct GBuffer {
     Image depth, normal, position, diffuse, material, primitive;

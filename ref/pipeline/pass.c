@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 #include "frame/shading.h"
-#include "number/op.h"
 
 #include <stdlib.h>
 
@@ -22,7 +21,7 @@ static TileRange tiles_of(const Pass *pass, const Primitive *primitive)
 }
 
 /* Counting sort by tile: counts, prefix sums, then the indices in draw order. */
-static Result bin(const Pass *pass, const PrimitiveList *list, Bins *out)
+static Result bin(Pass *pass, const PrimitiveList *list, Bins *out)
 {
     out->first = memory_array(pass->tile_count + (size_t)2, sizeof *out->first);
     if (!out->first)
@@ -36,6 +35,9 @@ static Result bin(const Pass *pass, const PrimitiveList *list, Bins *out)
     }
     for (uint32_t t = 0; t < pass->tile_count; t++)
         next[t + 1] += next[t];
+    Result result = pass_reserve(pass, next[pass->tile_count] * sizeof *out->item);
+    if (result != RESULT_OK)
+        return result;
     out->item = memory_array(next[pass->tile_count], sizeof *out->item);
     if (!out->item)
         return RESULT_NO_MEMORY;
@@ -48,11 +50,38 @@ static Result bin(const Pass *pass, const PrimitiveList *list, Bins *out)
     return RESULT_OK;
 }
 
+Result pass_reserve(Pass *pass, uint64_t bytes)
+{
+    pass->bytes += bytes;
+    if (pass->bytes <= pass->limit)
+        return RESULT_OK;
+    return result_fail(RESULT_NO_MEMORY,
+                       "ref: %d×%d needs %llu KiB, the limit is %llu KiB "
+                       "(--max-memory)",
+                       pass->view.width, pass->view.height, (unsigned long long)(pass->bytes >> 10),
+                       (unsigned long long)(pass->limit >> 10));
+}
+
+/* The frame's images, and what geometry_build allocates: vertices, and each primitive twice. What
+ * clipping adds is small and not foreseen. */
+static Result reserve_geometry(Pass *pass)
+{
+    uint64_t bytes = (uint64_t)pass->view.width * (uint64_t)pass->view.height *
+                     (format_pixel_bytes(FORMAT_RGBA32F) + format_pixel_bytes(FORMAT_RGBA8));
+    for (size_t i = 0; i < pass->view.draw_count; i++) {
+        const Mesh *mesh = &pass->scene->meshes[pass->view.draws[i].mesh];
+        bytes += mesh->vertex_count * sizeof(Vertex) +
+                 2 * (uint64_t)mesh->triangle_count * sizeof(Primitive);
+    }
+    return pass_reserve(pass, bytes);
+}
+
 Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
 {
     *out = (Pass){
         .desc = desc,
         .scene = scene,
+        .limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT,
         .fused = !desc->unfused,
         .depth_format = render_desc_depth(desc),
         .layout = gbuffer_layout(desc->gbuffer),
@@ -63,8 +92,9 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
     out->tile_columns = ((uint32_t)desc->width + TILE - 1) / TILE;
     out->tile_count = out->tile_columns * (((uint32_t)desc->height + TILE - 1) / TILE);
     out->pool = pool_create(desc->threads);
-    result = out->pool ? geometry_build(scene, &out->view, out->fused, out->pool, &out->geometry)
-                       : RESULT_NO_MEMORY;
+    result = out->pool ? reserve_geometry(out) : RESULT_NO_MEMORY;
+    if (result == RESULT_OK)
+        result = geometry_build(scene, &out->view, out->fused, out->pool, &out->geometry);
     if (result == RESULT_OK)
         result = bin(out, &out->geometry.opaque, &out->opaque_bins);
     if (result == RESULT_OK)
@@ -84,16 +114,6 @@ void pass_free(Pass *pass)
     pool_destroy(pass->pool);
     view_free(&pass->view);
     *pass = (Pass){0};
-}
-
-uint64_t pass_bytes(const Pass *pass)
-{
-    const Geometry *geometry = &pass->geometry;
-    size_t items =
-        pass->opaque_bins.first[pass->tile_count] + pass->transparent_bins.first[pass->tile_count];
-    return geometry->vertex_count * sizeof(Vertex) +
-           (geometry->opaque.count + geometry->transparent.count) * sizeof(Primitive) +
-           items * sizeof(uint32_t);
 }
 
 PixelRect pass_tile_rect(const Pass *pass, uint32_t tile)

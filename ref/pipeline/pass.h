@@ -28,6 +28,7 @@ typedef struct Pass {
     Geometry geometry;
     Bins opaque_bins, transparent_bins;
     uint32_t tile_columns, tile_count;
+    uint64_t bytes, limit; /* reserved so far; the caller's --max-memory */
     bool fused;
     PixelFormat depth_format;
     GBufferLayout layout;
@@ -35,7 +36,9 @@ typedef struct Pass {
 
 Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out);
 void pass_free(Pass *pass);
-uint64_t pass_bytes(const Pass *pass); /* of geometry and bins */
+
+/* Accounts for bytes about to be allocated; NO_MEMORY and a message past the limit. */
+Result pass_reserve(Pass *pass, uint64_t bytes);
 
 /* The tile's pixels in window coordinates (y up). */
 PixelRect pass_tile_rect(const Pass *pass, uint32_t tile);
@@ -120,10 +123,5 @@ void pass_counts_report(const PassCounts *counts, Frame *frame);
 
 /* The transmittance towards the background (see frame/shading.h, resolve). */
 float pass_background_weight(const Pass *pass, const float accum[4], float opaque_alpha);
-
-/* ---- the definition path (the other is in tile.h); frame's images are allocated ---- */
-
-Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
-uint64_t peel_buffer_bytes(const Pass *pass); /* that peel_render will allocate */
 
 #endif

@@ -1,26 +1,19 @@
 #include "ref/pipeline/pipeline.h"
 
 #include "base/clock.h"
+#include "ref/pipeline/methods/peel.h"
 #include "ref/pipeline/pass.h"
 #include "ref/pipeline/tile.h"
 
 #include <stdio.h>
 
-/* What the chosen path needs beside the scene, against the caller's limit. */
-static Result check_memory(const Pass *pass, bool definition, uint64_t *bytes)
-{
-    const RenderDesc *desc = pass->desc;
-    uint64_t pixels = (uint64_t)desc->width * (uint64_t)desc->height;
-    uint64_t limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
-    *bytes = pass_bytes(pass) + pixels * 20 + (definition ? peel_buffer_bytes(pass) : 0);
-    if (*bytes > limit)
-        return result_fail(RESULT_NO_MEMORY,
-                           "ref: %d×%d needs %llu MiB, more than the limit of %llu MiB "
-                           "(--max-memory)",
-                           desc->width, desc->height, (unsigned long long)(*bytes >> 20),
-                           (unsigned long long)(limit >> 20));
-    return RESULT_OK;
-}
+/* One row per method: see frame/method.h. */
+static const struct {
+    Result (*definition)(Pass *pass, TraceSink *trace, Frame *frame);
+    Result (*tile)(Pass *pass, Frame *frame);
+} methods[METHOD_COUNT] = {
+    [METHOD_PEEL] = {peel_render, tile_render},
+};
 
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
 {
@@ -34,13 +27,13 @@ static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trac
     snprintf(out->version, sizeof out->version, "Peel %s", PEEL_VERSION);
     snprintf(out->renderer, sizeof out->renderer, "ref (%s path)",
              definition ? "definition" : "tile");
-    result = check_memory(&pass, definition, &out->buffer_bytes);
-    if (result == RESULT_OK)
-        result = image_create(desc->width, desc->height, FORMAT_RGBA32F, &out->final);
+    result = image_create(desc->width, desc->height, FORMAT_RGBA32F, &out->final);
     if (result == RESULT_OK)
         result = image_create(desc->width, desc->height, FORMAT_RGBA8, &out->display);
     if (result == RESULT_OK)
-        result = definition ? peel_render(&pass, trace, out) : tile_render(&pass, out);
+        result = definition ? methods[desc->method].definition(&pass, trace, out)
+                            : methods[desc->method].tile(&pass, out);
+    out->buffer_bytes = pass.bytes;
     pass_free(&pass);
     return result;
 }

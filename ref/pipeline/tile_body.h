@@ -150,14 +150,14 @@ static void light_batch(Gathered *gathered)
     const Pass *pass = gathered->tile->pass;
     shade_batch(&pass->view, &gathered->batch);
     for (int lane = 0; lane < gathered->count; lane++) {
-        float colour[4];
+        float color[4];
         for (int i = 0; i < 4; i++)
-            colour[i] = gathered->batch.source[i][lane];
+            color[i] = gathered->batch.source[i][lane];
         void *accum = gathered->tile->scratch->accum + 16 * (size_t)gathered->pixel[lane];
         if (gathered->seed_blend)
-            blend_opaque_seed(pass->desc->accum, colour, accum);
+            blend_opaque_seed(pass->desc->accum, color, accum);
         else
-            blend_under(pass->desc->accum, colour, accum);
+            blend_under(pass->desc->accum, color, accum);
     }
     gathered->count = 0;
 }
@@ -307,21 +307,28 @@ static __attribute__((noinline)) void render_tile(const TileJob *job, uint32_t n
     resolve_tile(job, &tile);
 }
 
-static Result reserve_setups(const Pass *pass, uint32_t number, Scratch *scratch)
+/* That one tile keeps: at most SETUPS_MAX. */
+static size_t tile_setups(const Pass *pass, uint32_t number)
 {
     const size_t *first = pass->transparent_bins.first;
-    size_t needed = first[number + 1] - first[number];
-    if (needed > SETUPS_MAX)
-        needed = SETUPS_MAX;
-    return memory_grow((void **)&scratch->setups, &scratch->setup_capacity, needed,
-                       sizeof *scratch->setups);
+    size_t count = first[number + 1] - first[number];
+    return count < SETUPS_MAX ? count : SETUPS_MAX;
+}
+
+static size_t most_setups(const Pass *pass)
+{
+    size_t most = 0;
+    for (uint32_t tile = 0; tile < pass->tile_count; tile++)
+        most = tile_setups(pass, tile) > most ? tile_setups(pass, tile) : most;
+    return most;
 }
 
 static Result tile_task(void *context, uint32_t number, int worker)
 {
     const TileJob *job = context;
     Scratch *scratch = &job->scratch[worker];
-    Result result = reserve_setups(job->pass, number, scratch);
+    Result result = memory_grow((void **)&scratch->setups, &scratch->setup_capacity,
+                                tile_setups(job->pass, number), sizeof *scratch->setups);
     if (result != RESULT_OK)
         return result;
     uint32_t saved = op_enter();
@@ -358,10 +365,14 @@ Result TILE_RENDER(Pass *pass, Frame *frame)
 {
     int workers = pool_threads(pass->pool);
     TileJob job = {.pass = pass, .frame = frame};
+    Result result = pass_reserve(pass, (uint64_t)workers *
+                                           (sizeof(Scratch) + most_setups(pass) * sizeof(Setup)));
+    if (result != RESULT_OK)
+        return result;
     job.scratch = memory_array((size_t)workers, sizeof *job.scratch);
     job.counts = memory_array(pass->tile_count, sizeof *job.counts);
     job.peels = memory_array(pass->tile_count, sizeof *job.peels);
-    Result result = job.scratch && job.counts && job.peels ? run(&job) : RESULT_NO_MEMORY;
+    result = job.scratch && job.counts && job.peels ? run(&job) : RESULT_NO_MEMORY;
     if (result == RESULT_OK) {
         PassCounts sum = {0};
         for (uint32_t tile = 0; tile < pass->tile_count; tile++)

@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define MEMORY_DEFAULT ((size_t)4 << 30)
-
 /* One worker's scratch and counts; counts are sums and maxima, so they do not depend on which
  * worker took which tile. */
 typedef struct WorkerState {
@@ -210,7 +208,7 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
 static Result render_view(const Scene *scene, const RenderDesc *desc, const View *view,
                           TraceSink *trace, Frame *frame)
 {
-    size_t limit = desc->max_memory ? desc->max_memory : MEMORY_DEFAULT;
+    size_t limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
     size_t pixels = (size_t)view->width * (size_t)view->height;
     size_t image_bytes =
         pixels * (format_pixel_bytes(FORMAT_RGBA32F) + format_pixel_bytes(FORMAT_RGBA8));

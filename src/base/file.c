@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,36 +14,84 @@ static Result fail_write(const char *path, int error)
     return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
 }
 
-/* Creates a file beside path under a name that nobody uses. Not mkstemp, whose files only their
- * owner may read. */
+/* How much of path names its folder, the slash included. */
+static size_t folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Creates a file in path's folder under a name that nobody uses; the name does not grow with
+ * path's, which may be as long as names can be. Not mkstemp, whose files only their owner may
+ * read. */
 static int create_temporary(const char *path, char **temporary)
 {
-    for (int attempt = 0; attempt < 100; attempt++) {
-        size_t size = strlen(path) + 64;
-        char *name = malloc(size);
-        if (!name)
-            return -1;
-        snprintf(name, size, "%s.%ld-%d.tmp", path, (long)getpid(), attempt);
-        int descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0) {
-            *temporary = name;
-            return descriptor;
-        }
-        int error = errno;
-        free(name);
-        errno = error;
-        if (error != EEXIST)
-            return -1;
+    size_t folder = folder_length(path), size = folder + 64;
+    char *name = malloc(size);
+    if (!name)
+        return -1;
+    int descriptor = -1;
+    errno = EEXIST;
+    for (int attempt = 0; descriptor < 0 && errno == EEXIST && attempt < 100; attempt++) {
+        snprintf(name, size, "%.*s.peel-%ld-%d.tmp", (int)folder, path, (long)getpid(), attempt);
+        descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     }
+    if (descriptor >= 0) {
+        *temporary = name;
+        return descriptor;
+    }
+    int error = errno;
+    free(name);
+    errno = error;
     return -1;
 }
 
-/* A device must not be replaced by a regular file; a symbolic link stays, its target changes. */
+/* What the symbolic link at path names, from where path is seen from. NULL: errno says why. */
+static char *link_target(const char *path)
+{
+    char target[PATH_MAX];
+    ssize_t length = readlink(path, target, sizeof target);
+    if (length < 0)
+        return NULL;
+    if (length == (ssize_t)sizeof target) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    size_t folder = target[0] == '/' ? 0 : folder_length(path);
+    char *joined = malloc(folder + (size_t)length + 1);
+    if (!joined)
+        return NULL;
+    memcpy(joined, path, folder);
+    memcpy(joined + folder, target, (size_t)length);
+    joined[folder + (size_t)length] = 0;
+    return joined;
+}
+
+/* Sets writer->path, where there is no file, to what a chain of symbolic links leads to. */
+static bool follow_dangling(FileWriter *writer)
+{
+    struct stat status;
+    for (int links = 0; lstat(writer->path, &status) == 0 && S_ISLNK(status.st_mode); links++) {
+        if (links == 40) {
+            errno = ELOOP;
+            return false;
+        }
+        char *target = link_target(writer->path);
+        if (!target)
+            return false;
+        free(writer->path);
+        writer->path = target;
+    }
+    return true;
+}
+
+/* A device must not be replaced by a regular file; a symbolic link stays, its target changes or
+ * comes into being. */
 static int open_target(FileWriter *writer)
 {
     struct stat status;
     if (stat(writer->path, &status) != 0) {
-        if (errno != ENOENT || !*writer->path)
+        if (errno != ENOENT || !*writer->path || !follow_dangling(writer))
             return -1;
         return create_temporary(writer->path, &writer->temporary);
     }

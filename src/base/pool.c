@@ -1,6 +1,7 @@
 #include "base/pool.h"
 
 #include "base/memory.h"
+#include "base/progress.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -55,6 +56,7 @@ static void run_tasks(Pool *pool, int worker)
         Result result = pool->task(pool->context, index, worker);
         if (result != RESULT_OK)
             record_failure(pool, index, result);
+        progress_add();
     }
 }
 

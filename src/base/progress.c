@@ -1,6 +1,8 @@
 #include "base/progress.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
@@ -9,6 +11,8 @@ static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static const char *label;
 static uint64_t steps;
 static double last_drawn;
+static atomic_bool active;
+static atomic_ullong count;
 
 static double seconds(void)
 {
@@ -21,8 +25,10 @@ static void draw(uint64_t done)
 {
     if (steps)
         fprintf(stderr, "\r\033[K%s %3.0f%%", label, 100.0 * (double)done / (double)steps);
+    else if (done)
+        fprintf(stderr, "\r\033[K%s, step %llu", label, (unsigned long long)done);
     else
-        fprintf(stderr, "\r\033[K%s %llu", label, (unsigned long long)done);
+        fprintf(stderr, "\r\033[K%s", label);
     fflush(stderr);
 }
 
@@ -32,6 +38,8 @@ void progress_begin(const char *what, uint64_t total)
         return;
     pthread_mutex_lock(&mutex);
     label = what;
+    atomic_store(&count, 0);
+    atomic_store(&active, true);
     steps = total;
     last_drawn = seconds();
     draw(0);
@@ -48,8 +56,15 @@ void progress_step(uint64_t done)
     pthread_mutex_unlock(&mutex);
 }
 
+void progress_add(void)
+{
+    if (atomic_load(&active))
+        progress_step(atomic_fetch_add(&count, 1) + 1);
+}
+
 void progress_end(void)
 {
+    atomic_store(&active, false);
     pthread_mutex_lock(&mutex);
     if (label) {
         fprintf(stderr, "\r\033[K");

@@ -7,6 +7,7 @@
 /* what: a few words. total: steps expected; 0 when it is not known. */
 void progress_begin(const char *what, uint64_t total);
 void progress_step(uint64_t done); /* from any thread; redraws at most ten times a second */
+void progress_add(void);           /* one step more; pool_run does so after every task */
 void progress_end(void);           /* clears the line */
 
 #endif

@@ -18,7 +18,8 @@ typedef enum Result {
 const char *result_text(Result result);
 
 /* Records a one-line message (what, where, what was expected; no final full stop) for the calling
- * thread and returns code, so that callers write `return result_fail(RESULT_IO, "%s: ...", path)`. */
+ * thread and returns code, so that callers write `return result_fail(RESULT_IO, "%s: ...", path)`.
+ */
 Result result_fail(Result code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The calling thread's latest message, "" if there is none. Valid until its next result_fail. */

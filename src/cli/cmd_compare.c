@@ -95,23 +95,13 @@ static char *command_line(int argc, char **argv)
     return text;
 }
 
-/* The driver decides whether it fuses; --fma can only ask. */
-static Result check_fma(const RenderOptions *options, const Threeway *report)
-{
-    bool fused = report->frames[RENDERER_GL].fused;
-    if (options->fma == FMA_AUTO || fused == (options->fma == FMA_ON))
-        return RESULT_OK;
-    return result_fail(RESULT_NO_GL, "--fma %s: the GL driver here %s multiply-adds",
-                       options->fma == FMA_ON ? "on" : "off", fused ? "fuses" : "does not fuse");
-}
-
 /* Made, and found writable, before minutes of work and not after. */
 static Result open_directory(const char *path)
 {
     Result result = file_make_directories(path);
     if (result == RESULT_OK && access(path, W_OK) != 0)
-        result = result_fail(RESULT_IO, "%s: cannot write to this directory: %s", path,
-                             strerror(errno));
+        result =
+            result_fail(RESULT_IO, "%s: cannot write to this directory: %s", path, strerror(errno));
     return result;
 }
 
@@ -119,14 +109,17 @@ static Result compare(const CompareCommand *command, const Scene *scene, Threewa
 {
     Result result = command->report ? open_directory(command->report) : RESULT_OK;
     if (result == RESULT_OK)
+        result = options_check_output(command->json);
+    if (result == RESULT_OK)
+        result = options_check_fma(&command->render);
+    if (result == RESULT_OK)
         result = threeway_run(scene, command->render.scene_path, &command->render.desc,
                               bind_renderers, command->tolerance, command->report != NULL, report);
     if (result != RESULT_OK)
         return result;
-    result = check_fma(&command->render, report);
-    if (result == RESULT_OK)
-        report_table_print(report, stdout);
-    if (result == RESULT_OK && command->json)
+    report_table_print(report, stdout);
+    fflush(stdout); /* before a --json /dev/stdout */
+    if (command->json)
         result = report_json_write(report, command->json);
     if (result == RESULT_OK && command->report)
         result = report_html_write(report, command->line, command->report);
@@ -142,7 +135,7 @@ int cmd_compare(int argc, char **argv)
     int code = options_parse(&command_argp, argc, argv, &command);
     if (code) {
         free(command.line);
-        return code;
+        return code == OPTIONS_HELPED ? EXIT_AGREE : code;
     }
     Scene scene;
     Threeway report;

@@ -1,5 +1,6 @@
 /* peel render: one renderer to an image file, and every buffer to a trace. */
 #include "base/memory.h"
+#include "base/progress.h"
 #include "cli/bind.h"
 #include "cli/options.h"
 #include "compare/store.h"
@@ -110,12 +111,28 @@ static Result write_trace(const TraceStore *store, const char *path)
     return result;
 }
 
+/* What can be known before the work. */
+static Result check(const RenderCommand *command)
+{
+    if (command->output && command->trace && strcmp(command->output, command->trace) == 0)
+        return result_fail(RESULT_BAD_INPUT, "--trace %s: expected another file than -o",
+                           command->trace);
+    Result result = options_check_output(command->output);
+    if (result == RESULT_OK)
+        result = options_check_output(command->trace);
+    if (result == RESULT_OK && command->renderer == RENDERER_GL)
+        result = options_check_fma(&command->render);
+    return result;
+}
+
 static Result render(const RenderCommand *command, const Scene *scene, TraceStore *store,
                      Frame *out)
 {
     const RenderDesc *desc = &command->render.desc;
+    progress_begin(threeway_renderer_name(command->renderer), 0);
     Result result =
         bind_renderers[command->renderer](scene, desc, store ? store_sink(store) : NULL, out);
+    progress_end();
     if (result != RESULT_OK)
         return result;
     if (command->output)
@@ -145,14 +162,15 @@ int cmd_render(int argc, char **argv)
     RenderCommand command = {.render = options_default()};
     int code = options_parse(&command_argp, argc, argv, &command);
     if (code)
-        return code;
+        return code == OPTIONS_HELPED ? EXIT_AGREE : code;
     Scene scene;
     Frame frame;
     TraceStore *store = NULL;
     Result result = options_load_scene(&command.render, &scene);
     if (result != RESULT_OK)
         return options_fail(result);
-    if (command.trace)
+    result = check(&command);
+    if (result == RESULT_OK && command.trace)
         result = store_create(0, &store);
     if (result == RESULT_OK)
         result = render(&command, &scene, store, &frame);

@@ -62,15 +62,13 @@ int cmd_scenes(int argc, char **argv)
     ScenesOptions options = {0};
     int code = options_parse(&scenes_argp, argc, argv, &options);
     if (code)
-        return code;
+        return code == OPTIONS_HELPED ? EXIT_AGREE : code;
     if (!options.name)
         return list();
     const BuiltinScene *builtin = generate_find(options.name);
-    if (!builtin) {
-        fprintf(stderr, "peel: '%s' is no built-in scene; 'peel scenes' lists them\n",
-                options.name);
-        return EXIT_BAD_INPUT;
-    }
+    if (!builtin)
+        return options_fail(result_fail(
+            RESULT_BAD_INPUT, "'%s' is no built-in scene; 'peel scenes' lists them", options.name));
     Scene scene;
     Result result = builtin->generate(&scene);
     if (result == RESULT_OK) {

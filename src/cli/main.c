@@ -2,9 +2,11 @@
 #include "cli/bind.h"
 #include "cli/options.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct Command {
     const char *name;
@@ -29,7 +31,15 @@ static void print_help(FILE *out)
                  "4 bad input, usage or environment (one line on stderr says what).\n");
 }
 
-int main(int argc, char **argv)
+/* Files must not be opened under the numbers of streams that were closed. */
+static void open_standard_streams(void)
+{
+    for (int descriptor = 0; descriptor <= STDERR_FILENO; descriptor++)
+        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
+            abort();
+}
+
+static int run(int argc, char **argv)
 {
     if (argc < 2) {
         fprintf(stderr, "peel: no command given; see 'peel --help'\n");
@@ -49,13 +59,19 @@ int main(int argc, char **argv)
         char name[32];
         snprintf(name, sizeof name, "peel %s", commands[i].name);
         argv[1] = name;
-        int code = commands[i].run(argc - 1, argv + 1);
-        if (fflush(stdout) != 0 || ferror(stdout)) {
-            fprintf(stderr, "peel: standard output: write failed\n");
-            return EXIT_BAD_INPUT;
-        }
-        return code;
+        return commands[i].run(argc - 1, argv + 1);
     }
-    fprintf(stderr, "peel: '%s' is no command; see 'peel --help'\n", argv[1]);
-    return EXIT_BAD_INPUT;
+    return options_fail(
+        result_fail(RESULT_BAD_INPUT, "'%s' is no command; see 'peel --help'", argv[1]));
+}
+
+int main(int argc, char **argv)
+{
+    open_standard_streams();
+    int code = run(argc, argv);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "peel: standard output: write failed\n");
+        return EXIT_BAD_INPUT;
+    }
+    return code;
 }

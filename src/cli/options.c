@@ -1,15 +1,17 @@
 #include "cli/options.h"
 
 #include "frame/method.h"
+#include "gl/gl_renderer.h"
 #include "scene/generate.h"
 #include "scene/gltf.h"
 
 #include <errno.h>
-#include <math.h>
+#include <libgen.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- failing ---- */
@@ -18,12 +20,12 @@ static bool reported; /* a parser has printed its line */
 
 error_t options_error(const char *format, ...)
 {
+    char text[1024];
     va_list arguments;
     va_start(arguments, format);
-    fprintf(stderr, "peel: ");
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    options_fail(result_fail(RESULT_BAD_INPUT, "%s", text)); /* which makes it one line */
     reported = true;
     return EINVAL;
 }
@@ -35,20 +37,38 @@ int options_fail(Result result)
     return EXIT_BAD_INPUT;
 }
 
+/* Whether getopt would take word: no option at all, or one of the parser's or its children's. */
+static bool is_known(const struct argp *argp, const char *word)
+{
+    if (word[0] != '-' || word[1] == '\0')
+        return true;
+    size_t length = strcspn(word + 2, "=");
+    for (const struct argp_option *option = argp->options; option->name || option->doc; option++)
+        if (word[1] != '-' ? option->key == word[1]
+                           : option->name && strncmp(option->name, word + 2, length) == 0)
+            return true;
+    for (const struct argp_child *child = argp->children; child && child->argp; child++)
+        if (is_known(child->argp, word))
+            return true;
+    return false;
+}
+
 int options_parse(const struct argp *argp, int argc, char **argv, void *input)
 {
-    int index = 0;
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0) {
             argp_help(argp, stdout, ARGP_HELP_STD_HELP & ~ARGP_HELP_EXIT_OK, argv[0]);
-            exit(EXIT_AGREE);
+            return OPTIONS_HELPED;
         }
-    /* getopt would print two lines of its own; argp is then silent about --help, too. */
-    error_t error = argp_parse(argp, argc, argv, ARGP_NO_ERRS, &index, input);
+    /* getopt would print two lines of its own, and argp has hidden options. */
+    error_t error = argp_parse(argp, argc, argv, ARGP_NO_ERRS | ARGP_NO_HELP, NULL, input);
     if (error == 0)
         return 0;
     if (!reported) {
-        const char *word = index > 0 && index <= argc ? argv[index - 1] : argv[argc - 1];
+        const char *word = argv[argc - 1];
+        for (int i = argc - 1; i > 0; i--)
+            if (!is_known(argp, argv[i]))
+                word = argv[i];
         options_error("'%s' is no option or argument here, or lacks its value; see '%s --help'",
                       word, argv[0]);
     }
@@ -81,9 +101,11 @@ bool options_real(const char *text, double low, double high, double *out)
 static error_t parse_size(const char *text, RenderDesc *desc)
 {
     char *end;
+    bool digits = strspn(text, "0123456789x") == strlen(text);
     long width = strtol(text, &end, 10);
     long height = *end == 'x' ? strtol(end + 1, &end, 10) : 0;
-    if (*end || width < 1 || height < 1 || width > SIZE_MAX_PIXELS || height > SIZE_MAX_PIXELS)
+    if (!digits || *end || width < 1 || height < 1 || width > SIZE_MAX_PIXELS ||
+        height > SIZE_MAX_PIXELS)
         return options_error("--size %s: expected WxH, each from 1 to %d", text, SIZE_MAX_PIXELS);
     desc->width = (int)width;
     desc->height = (int)height;
@@ -174,7 +196,9 @@ static const struct argp_option render_options[] = {
     {"depth-func", KEY_DEPTH_FUNC, "FUNC", 0,
      "less (default: of equal depths the first drawn stays) or lequal (the last)", 1},
     {"fma", KEY_FMA, "on|off", 0,
-     "Fused multiply-add in fixed-function arithmetic (default as the GL driver does)", 1},
+     "Fused multiply-add in fixed-function arithmetic (default: as the GL driver does; without gl, "
+     "on)",
+     1},
     {"simd", KEY_SIMD, "NAME", 0,
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
     {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
@@ -194,6 +218,14 @@ static error_t parse_passes(const char *text, RenderDesc *desc)
     return 0;
 }
 
+/* "a", then "a, b", then "a, b or c": the i-th of count names. */
+static void append_name(char *list, size_t size, int i, int count, const char *name)
+{
+    size_t length = strlen(list);
+    const char *separator = i == 0 ? "" : i == count - 1 ? " or " : ", ";
+    snprintf(list + length, size - length, "%s%s", separator, name);
+}
+
 /* The index of text among the names, which are listed in the message when it is none of them. */
 static error_t parse_choice(const char *option, const char *text, const char *const names[],
                             int count, int *out)
@@ -204,9 +236,7 @@ static error_t parse_choice(const char *option, const char *text, const char *co
             *out = i;
             return 0;
         }
-        size_t length = strlen(expected);
-        const char *separator = i == 0 ? "" : i == count - 1 ? " or " : ", ";
-        snprintf(expected + length, sizeof expected - length, "%s%s", separator, names[i]);
+        append_name(expected, sizeof expected, i, count, names[i]);
     }
     return options_error("%s %s: expected %s", option, text, expected);
 }
@@ -214,10 +244,14 @@ static error_t parse_choice(const char *option, const char *text, const char *co
 static error_t parse_method(const char *text, RenderDesc *desc)
 {
     const MethodInfo *method = method_find(text);
-    if (!method)
-        return options_error("--method %s: there is no such method", text);
-    desc->method = method->id;
-    return 0;
+    if (method) {
+        desc->method = method->id;
+        return 0;
+    }
+    char expected[256] = "";
+    for (int i = 0; i < METHOD_COUNT; i++)
+        append_name(expected, sizeof expected, i, METHOD_COUNT, method_info((MethodId)i)->name);
+    return options_error("--method %s: expected %s", text, expected);
 }
 
 static error_t parse_lights(const char *text, RenderDesc *desc)
@@ -331,6 +365,11 @@ static Result load(const char *path, Scene *out)
     const BuiltinScene *builtin = generate_find(path);
     if (builtin && access(path, F_OK) != 0)
         return builtin->generate(out);
+    if (access(path, F_OK) != 0 && !strpbrk(path, "./"))
+        return result_fail(RESULT_IO,
+                           "%s: no such file, and no built-in scene of that name; see "
+                           "'peel scenes'",
+                           path);
     return gltf_load(path, out);
 }
 
@@ -379,4 +418,36 @@ Result options_load_scene(RenderOptions *options, Scene *out)
     if (options->fma == FMA_OFF)
         setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 1);
     return RESULT_OK;
+}
+
+Result options_check_fma(const RenderOptions *options)
+{
+    bool fused;
+    if (options->fma == FMA_AUTO)
+        return RESULT_OK;
+    Result result = gl_driver_fuses(options->desc.threads, &fused);
+    if (result == RESULT_OK && fused != (options->fma == FMA_ON))
+        result = result_fail(RESULT_NO_GL, "--fma %s: the GL driver here %s multiply-adds",
+                             fused ? "off" : "on", fused ? "fuses" : "does not fuse");
+    return result;
+}
+
+Result options_check_output(const char *path)
+{
+    struct stat status;
+    if (!path)
+        return RESULT_OK;
+    char *copy = strdup(path);
+    if (!copy)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
+    bool exists = stat(path, &status) == 0;
+    errno = 0;
+    if (exists && S_ISDIR(status.st_mode))
+        errno = EISDIR;
+    else
+        access(exists ? path : dirname(copy), W_OK);
+    int error = errno;
+    free(copy);
+    return error ? result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error))
+                 : RESULT_OK;
 }

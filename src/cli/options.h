@@ -36,8 +36,9 @@ extern const struct argp options_render_argp;
 /* The defaults of the command line: 1280×720. */
 RenderOptions options_default(void);
 
-/* Parses a command's line. Returns 0, or EXIT_BAD_INPUT after a one-line message; --help ends the
- * program with 0. */
+/* Parses a command's line. Returns 0, OPTIONS_HELPED after --help, or EXIT_BAD_INPUT after a
+ * one-line message. */
+enum { OPTIONS_HELPED = -1 };
 int options_parse(const struct argp *argp, int argc, char **argv, void *input);
 
 /* For parsers: one line on stderr, and the error code that options_parse turns into exit 4. */
@@ -50,6 +51,12 @@ bool options_real(const char *text, double low, double high, double *out);
 /* Loads the scene (a file, or a built-in scene by name) and applies camera, opacity, background
  * and arithmetic mode to it and options->desc. The caller frees the scene. */
 Result options_load_scene(RenderOptions *options, Scene *out);
+
+/* Refuses --fma where the GL driver here does not do it; call it before rendering with gl. */
+Result options_check_fma(const RenderOptions *options);
+
+/* Whether a file can be made or replaced at path (NULL is fine): found out before the work. */
+Result options_check_output(const char *path);
 
 /* Prints "peel: <message>" and returns EXIT_BAD_INPUT. */
 int options_fail(Result result);

@@ -6,15 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One channel value as stored: its bits, and how far two of them are apart. */
-static uint32_t channel_bits(const FormatInfo *info, const unsigned char *pixel, int channel)
-{
-    const unsigned char *at = pixel + channel * info->channel_bytes;
-    uint32_t bits = 0;
-    memcpy(&bits, at, (size_t)info->channel_bytes); /* little-endian, as PixelFormat is stored */
-    return bits;
-}
-
 static float as_float(uint32_t bits)
 {
     float x;
@@ -36,7 +27,7 @@ static void fold_value(BufferMetrics *metrics, PixelFormat format, const unsigne
 {
     const FormatInfo *info = format_info(format);
     uint32_t ulp =
-        channel_ulp(info->kind, channel_bits(info, a, channel), channel_bits(info, b, channel));
+        channel_ulp(info->kind, format_bits(format, a, channel), format_bits(format, b, channel));
     if (ulp == 0)
         return;
     metrics->differing++;
@@ -113,38 +104,65 @@ void metrics_final(const Image *a, const Image *b, FinalMetrics *out)
         out->psnr = NAN;
 }
 
-static int compare_doubles(const void *a, const void *b)
+/* The value that would be at `rank` if values were sorted: Hoare's selection. Reorders them. */
+static float select_rank(float *values, size_t count, size_t rank)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    size_t low = 0, high = count - 1;
+    while (low < high) {
+        float pivot = values[low + (high - low) / 2];
+        size_t i = low, j = high;
+        for (;;) {
+            while (values[i] < pivot)
+                i++;
+            while (values[j] > pivot)
+                j--;
+            if (i >= j)
+                break;
+            float swapped = values[i];
+            values[i++] = values[j];
+            values[j--] = swapped;
+        }
+        if (rank <= j)
+            high = j;
+        else
+            low = j + 1;
+    }
+    return values[rank];
 }
 
-Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *mask,
+/* Nearest rank: the least value that at least 99 % of the values do not exceed; 0 of none. */
+static double percentile99(float *values, size_t count)
+{
+    return count ? (double)select_rank(values, count, (count * 99 + 99) / 100 - 1) : 0.0;
+}
+
+Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
                           UnaffectedMetrics *out)
 {
-    size_t pixels = (size_t)a->width * (size_t)a->height;
+    size_t pixels = (size_t)a->width * (size_t)a->height, empty = 0;
     *out = (UnaffectedMetrics){0};
-    double *relative = memory_array(pixels, sizeof *relative);
+    float *relative = memory_array(pixels, sizeof *relative);
     if (!relative)
         return RESULT_NO_MEMORY;
     const float *pa = a->pixels, *pb = b->pixels;
     for (size_t i = 0; i < pixels; i++) {
-        if (!mask[i] || !is_finite4(pa + 4 * i) || !is_finite4(pb + 4 * i))
+        if (same[i] == STRUCTURE_DIFFERS || !is_finite4(pa + 4 * i) || !is_finite4(pb + 4 * i))
             continue;
         double worst = 0.0;
         for (int c = 0; c < 4; c++) {
             double d = fabs((double)pa[4 * i + (size_t)c] - (double)pb[4 * i + (size_t)c]);
-            out->max_abs = d > out->max_abs ? d : out->max_abs;
+            out->max_abs = fmax(out->max_abs, d);
             worst = fmax(worst, d / fmax(1.0, fabs((double)pb[4 * i + (size_t)c])));
         }
-        relative[out->pixels++] = worst;
+        out->max_rel = fmax(out->max_rel, worst);
+        /* Occupied pixels from the front, the others from the back. */
+        size_t at = same[i] == STRUCTURE_SAME ? out->occupied++ : pixels - ++empty;
+        relative[at] = (float)worst;
     }
-    if (out->pixels > 0) {
-        qsort(relative, out->pixels, sizeof *relative, compare_doubles);
-        out->max_rel = relative[out->pixels - 1];
-        /* Nearest rank: the least value that at least 99 % of the pixels do not exceed. */
-        out->p99_rel = relative[(out->pixels * 99 + 99) / 100 - 1];
-    }
+    out->pixels = out->occupied + empty;
+    double occupied = percentile99(relative, out->occupied);
+    memmove(relative + out->occupied, relative + pixels - empty, empty * sizeof *relative);
+    out->p99_rel = fmax(occupied, percentile99(relative, out->pixels));
     free(relative);
     return RESULT_OK;
 }

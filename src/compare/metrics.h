@@ -2,6 +2,7 @@
 #ifndef PEEL_COMPARE_METRICS_H
 #define PEEL_COMPARE_METRICS_H
 
+#include "compare/structure.h"
 #include "image/image.h"
 
 #include <stdbool.h>
@@ -30,10 +31,13 @@ typedef struct FinalMetrics {
 
 /* Difference where both sides see the same fragments in the same order. */
 typedef struct UnaffectedMetrics {
-    uint64_t pixels;
+    uint64_t pixels;   /* with the same structure */
+    uint64_t occupied; /* of those, with a fragment: the others show only the background */
     double max_abs;
     double max_rel; /* relative to max(1, |b|) */
-    double p99_rel; /* 99th percentile over pixels of a pixel's greatest relative difference */
+    /* 99th percentile of a pixel's greatest relative difference: over all these pixels, or over the
+     * occupied ones, whichever is greater, so that background neither hides nor is hidden. */
+    double p99_rel;
 } UnaffectedMetrics;
 
 /* Folds the differences of a rectangle of two buffers of one format into metrics (zeroed or from
@@ -45,8 +49,8 @@ void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, in
 /* a and b: FORMAT_RGBA32F of one size. */
 void metrics_final(const Image *a, const Image *b, FinalMetrics *out);
 
-/* mask: width·height bytes, nonzero where the structure agrees. NO_MEMORY on failure. */
-Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *mask,
+/* same: width·height bytes, a StructureSame each. NO_MEMORY on failure. */
+Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
                           UnaffectedMetrics *out);
 
 #endif

@@ -1,8 +1,10 @@
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "compare/store.h"
 
 #include "base/memory.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,6 +84,12 @@ static int find_previous(const TraceStore *store, const char *name)
     return store_find(store, previous);
 }
 
+static bool is_same_shape(const StoredBuffer *stored, const TraceBuffer *buffer)
+{
+    return stored->format == buffer->format && stored->width == buffer->image_width &&
+           stored->height == buffer->image_height;
+}
+
 static Result add_entry(TraceStore *store, const TraceBuffer *buffer)
 {
     Result result = memory_grow((void **)&store->entries, &store->capacity, store->count + 1,
@@ -96,6 +104,8 @@ static Result add_entry(TraceStore *store, const TraceBuffer *buffer)
         .columns = columns_of(buffer->image_width),
         .previous = find_previous(store, buffer->name),
     };
+    if (entry.previous >= 0 && !is_same_shape(&store->entries[entry.previous].buffer, buffer))
+        entry.previous = -1;
     snprintf(entry.buffer.name, sizeof entry.buffer.name, "%s", buffer->name);
     entry.tiles = memory_array((size_t)entry.columns * (size_t)columns_of(buffer->image_height),
                                sizeof *entry.tiles);
@@ -120,8 +130,10 @@ static Result load_tile(const TraceStore *store, const TileRef *ref, size_t pixe
         memcpy(out, ref->memory, bytes);
         break;
     case TILE_FILE:
+        errno = 0;
         if (pread(fileno(store->file), out, bytes, (off_t)ref->offset) != (ssize_t)bytes)
-            return result_fail(RESULT_IO, "temporary trace file: read failed: %s", strerror(errno));
+            return result_fail(RESULT_IO, "temporary trace file: read failed: %s",
+                               strerror(errno ? errno : EIO));
         break;
     }
     return RESULT_OK;
@@ -132,12 +144,22 @@ static bool is_constant(const unsigned char *tile, size_t bytes, size_t pixel_by
     return memcmp(tile, tile + pixel_bytes, bytes - pixel_bytes) == 0;
 }
 
+/* An unnamed file in TMPDIR, or where tmpfile puts it. */
+static FILE *open_temporary(void)
+{
+    const char *directory = getenv("TMPDIR");
+    int descriptor = directory ? open(directory, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600) : -1;
+    return descriptor >= 0 ? fdopen(descriptor, "w+b") : tmpfile();
+}
+
 static Result spill(TraceStore *store, size_t bytes, TileRef *ref)
 {
-    if (!store->file && !(store->file = tmpfile()))
+    if (!store->file && !(store->file = open_temporary()))
         return result_fail(RESULT_IO, "temporary trace file: %s", strerror(errno));
+    errno = 0;
     if (pwrite(fileno(store->file), store->tile, bytes, (off_t)store->file_bytes) != (ssize_t)bytes)
-        return result_fail(RESULT_IO, "temporary trace file: write failed: %s", strerror(errno));
+        return result_fail(RESULT_IO, "temporary trace file: write failed: %s",
+                           strerror(errno ? errno : ENOSPC));
     ref->kind = TILE_FILE;
     ref->offset = store->file_bytes;
     store->file_bytes += bytes;
@@ -202,6 +224,9 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
         index = (int)store->count - 1;
     }
     const Entry *entry = &store->entries[index];
+    if (!is_same_shape(&entry->buffer, buffer))
+        return result_fail(RESULT_INTERNAL, "trace: %s came twice, in two sizes or formats",
+                           buffer->name);
     size_t pixel_bytes = format_pixel_bytes(buffer->format);
     for (int y = 0; y < buffer->height; y += TRACE_TILE)
         for (int x = 0; x < buffer->width; x += TRACE_TILE) {

@@ -114,17 +114,20 @@ typedef struct Comparison {
     uint32_t *sequence_a, *sequence_b;
 } Comparison;
 
-static bool compare_pixel(Comparison *comparison, int p, StructureCounts *out)
+static StructureSame compare_pixel(Comparison *comparison, int p, StructureCounts *out)
 {
     bool flip = comparison->a.opaque_ids[p] != comparison->b.opaque_ids[p];
     out->opaque_flips += flip;
     int count_a = gather(&comparison->a, p, comparison->sequence_a);
     int count_b = gather(&comparison->b, p, comparison->sequence_b);
-    if (count_a == count_b && memcmp(comparison->sequence_a, comparison->sequence_b,
-                                     (size_t)count_a * sizeof(uint32_t)) == 0)
-        return !flip;
-    count_differences(comparison->sequence_a, count_a, comparison->sequence_b, count_b, out);
-    return false;
+    if (count_a != count_b || memcmp(comparison->sequence_a, comparison->sequence_b,
+                                     (size_t)count_a * sizeof(uint32_t)) != 0) {
+        count_differences(comparison->sequence_a, count_a, comparison->sequence_b, count_b, out);
+        return STRUCTURE_DIFFERS;
+    }
+    if (flip)
+        return STRUCTURE_DIFFERS;
+    return count_a == 0 && comparison->a.opaque_ids[p] == NONE ? STRUCTURE_EMPTY : STRUCTURE_SAME;
 }
 
 static Result compare_tiles(Comparison *comparison, int width, int height, uint8_t *same,

@@ -17,3 +17,10 @@ const char *simd_name(SimdChoice simd)
     static const char *const names[SIMD_COUNT] = {"auto", "scalar", "sse2", "avx2", "avx512"};
     return names[simd];
 }
+
+GBufferLayout gbuffer_layout(GBufferFormat format)
+{
+    if (format == GBUFFER_SEED)
+        return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA8, FORMAT_RGBA8};
+    return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F};
+}

@@ -96,6 +96,13 @@ static inline PixelFormat render_desc_depth(const RenderDesc *desc)
     return desc->depth == FORMAT_D24 ? FORMAT_D24 : FORMAT_D32F;
 }
 
+/* Stored formats of the G-buffer's colour buffers. */
+typedef struct GBufferLayout {
+    PixelFormat normal, position, diffuse, material;
+} GBufferLayout;
+
+GBufferLayout gbuffer_layout(GBufferFormat format);
+
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,
  * raw peel test, its culling, normals and opaque blend. */
 void render_desc_seed_profile(RenderDesc *desc);

@@ -48,8 +48,15 @@ static Draw make_draw(const Scene *scene, uint32_t index, const Matrix *view, Cu
     draw.flipped = matrix_determinant3(&model_view) < 0.0;
     draw.cull_back = culls_back(cull, material, draw.transparent);
     matrix_round(&model_view, draw.model_view);
+    /* Normals are normalised after the product, so a power of two changes no bit of them; it keeps
+     * the matrix of a tiny or huge instance within single precision. */
+    double largest = 0.0;
     for (int i = 0; i < 9; i++)
-        draw.normal_matrix[i] = (float)normal[i];
+        largest = fmax(largest, fabs(normal[i]));
+    int exponent = 0;
+    frexp(largest, &exponent);
+    for (int i = 0; i < 9; i++)
+        draw.normal_matrix[i] = (float)ldexp(normal[i], -exponent);
     return draw;
 }
 
@@ -81,6 +88,9 @@ static Result check(const Scene *scene, const RenderDesc *desc)
     if (desc->accum != FORMAT_RGBA32F && desc->accum != FORMAT_RGBA16)
         return result_fail(RESULT_BAD_INPUT, "accumulation in %s: expected rgba32f or rgba16",
                            format_info(desc->accum)->name);
+    if (desc->depth != 0 && desc->depth != FORMAT_D32F && desc->depth != FORMAT_D24)
+        return result_fail(RESULT_BAD_INPUT, "depth in %s: expected d32f or d24",
+                           format_info(desc->depth)->name);
     if (!isfinite(desc->time) || fabs(desc->time) > 1e6)
         return result_fail(RESULT_BAD_INPUT, "time %g: expected at most 1e6 seconds", desc->time);
     if (scene_triangle_count(scene) >= UINT32_MAX)
@@ -129,6 +139,14 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
     Matrix projection = matrix_perspective(camera->yfov, (double)desc->width / desc->height,
                                            camera->near, camera->far);
     matrix_round(&projection, out->projection);
+    for (int i = 0; i < 4; i++) {
+        static const int used[4] = {0, 5, 10, 14};
+        if (!isnormal(out->projection[used[i]]))
+            return result_fail(RESULT_BAD_INPUT,
+                               "camera %d: its projection (yfov %g, near %g, far %g) does not fit "
+                               "in single precision",
+                               desc->camera, camera->yfov, camera->near, camera->far);
+    }
 
     out->draws = memory_array(scene->instance_count, sizeof *out->draws);
     out->lights = memory_array(scene->light_count, sizeof *out->lights);

@@ -19,8 +19,8 @@ void image_free(Image *image); /* leaves an empty image; NULL pixels are fine */
 
 static inline void *image_pixel(const Image *image, int x, int y)
 {
-    return (char *)image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) *
-                                       format_pixel_bytes(image->format);
+    return (char *)image->pixels +
+           ((size_t)y * (size_t)image->width + (size_t)x) * format_pixel_bytes(image->format);
 }
 
 #endif

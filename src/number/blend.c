@@ -2,6 +2,8 @@
 
 #include "number/op.h"
 
+#include <assert.h>
+
 static void under32f(const float source[4], float dst[4])
 {
     float transmittance = dst[3];
@@ -49,9 +51,16 @@ static void seed16(const float source[4], uint16_t dst[4])
         dst[i] = add_product16(unorm16_from_float(source[i]), transmittance, dst[i]);
 }
 
+/* The accumulation formats that view_build lets through. */
+static bool is_unorm16(PixelFormat format)
+{
+    assert(format == FORMAT_RGBA16 || format == FORMAT_RGBA32F);
+    return format == FORMAT_RGBA16;
+}
+
 void blend_clear(PixelFormat format, void *pixel)
 {
-    if (format == FORMAT_RGBA16)
+    if (is_unorm16(format))
         memcpy(pixel, (const uint16_t[4]){0, 0, 0, 65535}, 4 * sizeof(uint16_t));
     else
         memcpy(pixel, (const float[4]){0, 0, 0, 1}, 4 * sizeof(float));
@@ -59,7 +68,7 @@ void blend_clear(PixelFormat format, void *pixel)
 
 void blend_under(PixelFormat format, const float source[4], void *pixel)
 {
-    if (format == FORMAT_RGBA16)
+    if (is_unorm16(format))
         under16(source, pixel);
     else
         under32f(source, pixel);
@@ -67,7 +76,7 @@ void blend_under(PixelFormat format, const float source[4], void *pixel)
 
 void blend_opaque_seed(PixelFormat format, const float source[4], void *pixel)
 {
-    if (format == FORMAT_RGBA16)
+    if (is_unorm16(format))
         seed16(source, pixel);
     else
         seed32f(source, pixel);

@@ -2,6 +2,8 @@
 
 #include "number/op.h"
 
+#include <assert.h>
+
 static const FormatInfo infos[FORMAT_COUNT] = {
     [FORMAT_RGBA32F] = {"rgba32f", KIND_FLOAT, 4, 4, 0},
     [FORMAT_RGBA16F] = {"rgba16f", KIND_HALF, 4, 2, 0},
@@ -22,7 +24,7 @@ size_t format_pixel_bytes(PixelFormat format)
     return (size_t)infos[format].channels * (size_t)infos[format].channel_bytes;
 }
 
-float format_channel(PixelFormat format, const void *pixel, int channel)
+uint32_t format_bits(PixelFormat format, const void *pixel, int channel)
 {
     const FormatInfo *info = &infos[format];
     const unsigned char *at = (const unsigned char *)pixel + channel * info->channel_bytes;
@@ -36,6 +38,13 @@ float format_channel(PixelFormat format, const void *pixel, int channel)
     } else {
         memcpy(&bits, at, sizeof bits);
     }
+    return bits;
+}
+
+float format_channel(PixelFormat format, const void *pixel, int channel)
+{
+    const FormatInfo *info = &infos[format];
+    uint32_t bits = format_bits(format, pixel, channel);
     switch (info->kind) {
     case KIND_FLOAT:
         return op_from_bits(bits);
@@ -62,13 +71,20 @@ void format_store(PixelFormat format, const float value[4], void *pixel)
     case FORMAT_RGBA16:
     case FORMAT_RGBA16F:
         for (int i = 0; i < 4; i++)
-            words[i] = format == FORMAT_RGBA16 ? unorm16_from_float(value[i])
-                                               : half_from_float(value[i]);
+            words[i] =
+                format == FORMAT_RGBA16 ? unorm16_from_float(value[i]) : half_from_float(value[i]);
         memcpy(pixel, words, sizeof words);
         return;
-    default:
+    case FORMAT_RGBA32F:
         memcpy(pixel, value, 4 * sizeof *value);
+        return;
+    case FORMAT_D32F:
+    case FORMAT_D24:
+    case FORMAT_R32UI:
+    case FORMAT_COUNT:
+        break;
     }
+    assert(!"not a colour format");
 }
 
 void format_fetch(PixelFormat format, const void *pixel, float value[4])
@@ -85,12 +101,19 @@ void format_fetch(PixelFormat format, const void *pixel, float value[4])
     case FORMAT_RGBA16F:
         memcpy(words, pixel, sizeof words);
         for (int i = 0; i < 4; i++)
-            value[i] = format == FORMAT_RGBA16 ? unorm16_to_float(words[i])
-                                               : half_to_float(words[i]);
+            value[i] =
+                format == FORMAT_RGBA16 ? unorm16_to_float(words[i]) : half_to_float(words[i]);
         return;
-    default:
+    case FORMAT_RGBA32F:
         memcpy(value, pixel, 4 * sizeof *value);
+        return;
+    case FORMAT_D32F:
+    case FORMAT_D24:
+    case FORMAT_R32UI:
+    case FORMAT_COUNT:
+        break;
     }
+    assert(!"not a colour format");
 }
 
 uint8_t unorm8_from_float(float x)

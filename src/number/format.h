@@ -19,7 +19,12 @@ typedef enum PixelFormat {
     FORMAT_COUNT
 } PixelFormat;
 
-typedef enum FormatKind { KIND_FLOAT, KIND_HALF, KIND_UNORM, KIND_UINT } FormatKind;
+typedef enum FormatKind {
+    KIND_FLOAT,
+    KIND_HALF,
+    KIND_UNORM,
+    KIND_UINT
+} FormatKind;
 
 typedef struct FormatInfo {
     const char *name; /* "rgba32f", as the command line and JSON spell it */
@@ -31,6 +36,9 @@ typedef struct FormatInfo {
 
 const FormatInfo *format_info(PixelFormat format); /* static */
 size_t format_pixel_bytes(PixelFormat format);
+
+/* Channel `channel` of the pixel at `pixel`: its stored bits, in the low end of the result. */
+uint32_t format_bits(PixelFormat format, const void *pixel, int channel);
 
 /* Channel `channel` of the pixel at `pixel`, as a number: floats as they are, halves exactly,
  * unorm as integer / unorm_max in double, rounded to float. */

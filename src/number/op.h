@@ -181,7 +181,8 @@ static inline float op_abs(float a)
     return op_from_bits(op_bits(a) & 0x7fffffffu);
 }
 
-/* ---- GLSL functions, as llvmpipe computes them ------------------------------------------------ */
+/* ---- GLSL functions, as llvmpipe computes them ------------------------------------------------
+ */
 
 /* b NaN gives a as it is; equal operands give b; a denormal result is flushed. */
 static inline float op_min(float a, float b)
@@ -259,14 +260,12 @@ static inline float op_exp2(bool fused, float x)
         whole--;
     float f = op_sub(x, (float)whole);
     float f2 = op_mul(f, f);
-    float even = op_muladd(fused, f2,
-                           op_muladd(fused, f2, 0.00898934009049466391101f,
-                                     0.240153617044375388211f),
-                           1.0f);
-    float odd = op_muladd(fused, f2,
-                          op_muladd(fused, f2, 0.00187757667519147912699f,
-                                    0.0558263180532956664775f),
-                          0.693153073200168932794f);
+    float even =
+        op_muladd(fused, f2,
+                  op_muladd(fused, f2, 0.00898934009049466391101f, 0.240153617044375388211f), 1.0f);
+    float odd = op_muladd(
+        fused, f2, op_muladd(fused, f2, 0.00187757667519147912699f, 0.0558263180532956664775f),
+        0.693153073200168932794f);
     float power = op_from_bits((uint32_t)(whole + 127) << 23);
     return op_mul(power, op_muladd(fused, odd, f, even));
 }
@@ -284,10 +283,9 @@ static inline float op_log2(bool fused, float x)
     float y = op_div(op_sub(mantissa, 1.0f), op_add(mantissa, 1.0f));
     float z = op_mul(y, y);
     float w = op_mul(z, z);
-    float even = op_muladd(fused, w,
-                           op_muladd(fused, w, 0.406718052498846252698f,
-                                     0.577440339438736392009f),
-                           2.88539009343309178325f);
+    float even =
+        op_muladd(fused, w, op_muladd(fused, w, 0.406718052498846252698f, 0.577440339438736392009f),
+                  2.88539009343309178325f);
     float odd = op_muladd(fused, w, 0.403343858251329912514f, 0.961791550404184197881f);
     return op_muladd(fused, y, op_muladd(fused, odd, z, even), exponent);
 }

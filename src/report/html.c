@@ -6,9 +6,7 @@
 #include "report/pictures.h"
 #include "report/summary.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,9 +155,9 @@ static void put_differences(FileWriter *page, const Threeway *report)
     for (int i = 0; i < 3; i++) {
         const PairReport *pair = &report->pairs[i];
         const char *a = threeway_renderer_name(pair->a), *b = threeway_renderer_name(pair->b);
-        const FinalMetrics *final = &pair->final;
-        summary_count(final->differing, differing);
-        summary_real(final->max_abs, greatest);
+        const FinalMetrics *metrics = &pair->final;
+        summary_count(metrics->differing, differing);
+        summary_real(metrics->max_abs, greatest);
         put_picture(page, &(Picture){.shown = pictures_preview(pair, block, small),
                                      .linked = pictures_difference(pair, name),
                                      .width = (image->width + block - 1) / block,
@@ -167,10 +165,11 @@ static void put_differences(FileWriter *page, const Threeway *report)
         file_writer_print(page, "Difference of %s and %s: %s pixels differ, at most by %s", a, b,
                           differing, greatest);
         file_writer_print(page, "\"></a>\n<figcaption><strong>%s &minus; %s</strong> ", a, b);
-        if (final->differing)
+        if (metrics->differing)
             file_writer_print(page, "%s pixels differ (%.2f&nbsp;%%), at most by %s; RMSE %s",
-                              differing, 100.0 * (double) final->differing / (double) final->pixels,
-                              greatest, summary_real(final->rmse, rmse));
+                              differing,
+                              100.0 * (double)metrics->differing / (double)metrics->pixels,
+                              greatest, summary_real(metrics->rmse, rmse));
         else
             file_writer_print(page, "equal, bit for bit");
         file_writer_print(page, "</figcaption>\n</figure>\n");
@@ -286,6 +285,8 @@ Result report_html_write(const Threeway *report, const char *command, const char
                            : RESULT_NO_MEMORY;
     if (result == RESULT_OK)
         result = write_page(report, command, page);
+    if (result == RESULT_OK)
+        result = pictures_remove_stale(report, dir);
     free(style);
     free(page);
     return result;

@@ -219,6 +219,7 @@ static void put_times(FileWriter *page, const Threeway *report)
         file_writer_print(page, "</td></tr>\n");
     }
     close_table(page);
+    file_writer_print(page, "<p>" SUMMARY_TIME_NOTE "</p>\n");
 }
 
 void html_tables(FileWriter *page, const Threeway *report)

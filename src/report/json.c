@@ -10,6 +10,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct Document {
+    bool failed; /* a jansson call failed: memory is exhausted */
+} Document;
+
+/* Both take over value; NULL counts as a failure. */
+static void put(Document *json, json_t *object, const char *key, json_t *value)
+{
+    if (json_object_set_new(object, key, value))
+        json->failed = true;
+}
+
+static void append(Document *json, json_t *array, json_t *value)
+{
+    if (json_array_append_new(array, value))
+        json->failed = true;
+}
+
 static json_t *real(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -35,126 +52,129 @@ static json_t *string(const char *text)
     return value;
 }
 
-static json_t *renderers(const Threeway *report)
+static json_t *renderers(Document *json, const Threeway *report)
 {
     json_t *object = json_object();
     for (int i = 0; i < RENDERER_COUNT; i++) {
         const Frame *frame = &report->frames[i];
         json_t *one = json_object();
-        json_object_set_new(one, "time_ms", real(frame->time_ms));
-        json_object_set_new(one, "cpu_ms", real(frame->cpu_ms));
-        json_object_set_new(one, "threads", json_integer(frame->threads));
-        json_object_set_new(one, "peels", json_integer(frame->peels));
-        json_object_set_new(one, "buffer_bytes", count(frame->buffer_bytes));
-        json_object_set_new(one, "version", string(frame->version));
-        json_object_set_new(one, "renderer", string(frame->renderer));
-        json_object_set_new(object, threeway_renderer_name(i), one);
+        put(json, one, "time_ms", real(frame->time_ms));
+        put(json, one, "cpu_ms", real(frame->cpu_ms));
+        put(json, one, "threads", json_integer(frame->threads));
+        put(json, one, "peels", json_integer(frame->peels));
+        put(json, one, "buffer_bytes", count(frame->buffer_bytes));
+        put(json, one, "version", string(frame->version));
+        put(json, one, "renderer", string(frame->renderer));
+        put(json, object, threeway_renderer_name(i), one);
     }
     return object;
 }
 
-static json_t *buffers(const PairReport *pair)
+static json_t *buffers(Document *json, const PairReport *pair)
 {
     json_t *array = json_array();
     for (size_t i = 0; i < pair->buffer_count; i++) {
         const BufferMetrics *buffer = &pair->buffers[i];
         json_t *one = json_object();
-        json_object_set_new(one, "name", string(buffer->name));
-        json_object_set_new(one, "values", count(buffer->values));
-        json_object_set_new(one, "differing", count(buffer->differing));
-        json_object_set_new(one, "max_ulp", json_integer(buffer->max_ulp));
-        json_object_set_new(one, "max_abs", real(buffer->max_abs));
-        json_object_set_new(one, "first",
-                            buffer->has_first ? json_pack("[iii]", buffer->first[0],
-                                                          buffer->first[1], buffer->first[2])
-                                              : json_null());
-        json_array_append_new(array, one);
+        put(json, one, "name", string(buffer->name));
+        put(json, one, "values", count(buffer->values));
+        put(json, one, "differing", count(buffer->differing));
+        put(json, one, "max_ulp", json_integer(buffer->max_ulp));
+        put(json, one, "max_abs", real(buffer->max_abs));
+        put(json, one, "first",
+            buffer->has_first
+                ? json_pack("[iii]", buffer->first[0], buffer->first[1], buffer->first[2])
+                : json_null());
+        append(json, array, one);
     }
     return array;
 }
 
-static json_t *final_image(const FinalMetrics *final)
+static json_t *final_image(Document *json, const FinalMetrics *final)
 {
     json_t *object = json_object();
-    json_object_set_new(object, "pixels", count(final->pixels));
-    json_object_set_new(object, "differing", count(final->differing));
-    json_object_set_new(object, "max_abs", real(final->max_abs));
-    json_object_set_new(object, "mean_abs", real(final->mean_abs));
-    json_object_set_new(object, "rmse", real(final->rmse));
-    json_object_set_new(object, "psnr", real(final->psnr));
-    json_object_set_new(object, "max_ulp", json_integer(final->max_ulp));
-    json_object_set_new(object, "nonfinite", count(final->nonfinite));
+    put(json, object, "pixels", count(final->pixels));
+    put(json, object, "differing", count(final->differing));
+    put(json, object, "max_abs", real(final->max_abs));
+    put(json, object, "mean_abs", real(final->mean_abs));
+    put(json, object, "rmse", real(final->rmse));
+    put(json, object, "psnr", real(final->psnr));
+    put(json, object, "max_ulp", json_integer(final->max_ulp));
+    put(json, object, "nonfinite", count(final->nonfinite));
     return object;
 }
 
-static json_t *pairs(const Threeway *report)
+static json_t *pairs(Document *json, const Threeway *report)
 {
     json_t *array = json_array();
     for (int i = 0; i < 3; i++) {
         const PairReport *pair = &report->pairs[i];
         json_t *one = json_object();
-        json_object_set_new(one, "a", json_string(threeway_renderer_name(pair->a)));
-        json_object_set_new(one, "b", json_string(threeway_renderer_name(pair->b)));
+        put(json, one, "a", json_string(threeway_renderer_name(pair->a)));
+        put(json, one, "b", json_string(threeway_renderer_name(pair->b)));
         if (!pair->has_unaffected)
-            json_object_set_new(one, "buffers", buffers(pair));
-        json_object_set_new(one, "final", final_image(&pair->final));
+            put(json, one, "buffers", buffers(json, pair));
+        put(json, one, "final", final_image(json, &pair->final));
         if (pair->has_unaffected) {
             json_t *unaffected = json_object();
-            json_object_set_new(unaffected, "pixels", count(pair->unaffected.pixels));
-            json_object_set_new(unaffected, "max_abs", real(pair->unaffected.max_abs));
-            json_object_set_new(unaffected, "max_rel", real(pair->unaffected.max_rel));
-            json_object_set_new(unaffected, "p99_rel", real(pair->unaffected.p99_rel));
-            json_object_set_new(one, "unaffected", unaffected);
+            put(json, unaffected, "pixels", count(pair->unaffected.pixels));
+            put(json, unaffected, "occupied", count(pair->unaffected.occupied));
+            put(json, unaffected, "max_abs", real(pair->unaffected.max_abs));
+            put(json, unaffected, "max_rel", real(pair->unaffected.max_rel));
+            put(json, unaffected, "p99_rel", real(pair->unaffected.p99_rel));
+            put(json, one, "unaffected", unaffected);
         }
-        json_array_append_new(array, one);
+        append(json, array, one);
     }
     return array;
 }
 
-static json_t *layers(const Threeway *report)
+static json_t *layers(Document *json, const Threeway *report)
 {
     SummaryLayer rows[SUMMARY_LAYERS];
     json_t *object = json_object();
     summary_layers(report, rows);
     for (int i = 0; i < SUMMARY_LAYERS; i++)
-        json_object_set_new(object, rows[i].key, count(rows[i].value));
+        put(json, object, rows[i].key, count(rows[i].value));
     return object;
 }
 
-static json_t *document(const Threeway *report)
+static json_t *document(Document *json, const Threeway *report)
 {
     const Frame *ref = &report->frames[RENDERER_REF];
     json_t *root = json_object();
-    json_object_set_new(root, "scene", string(report->scene_path));
-    json_object_set_new(root, "size", json_pack("[ii]", report->desc.width, report->desc.height));
-    json_object_set_new(root, "method", string(method_info(report->desc.method)->name));
-    json_object_set_new(root, "passes", json_integer(ref->peels));
-    json_object_set_new(root, "profile", string(report->seed_profile ? "seed" : "default"));
-    json_object_set_new(root, "fma", json_boolean(ref->fused));
-    json_object_set_new(root, "agree", json_boolean(report->agree));
-    json_object_set_new(root, "tolerance", real(report->tolerance));
-    json_object_set_new(root, "renderers", renderers(report));
-    json_object_set_new(root, "pairs", pairs(report));
-    json_object_set_new(root, "layers", layers(report));
+    put(json, root, "scene", string(report->scene_path));
+    put(json, root, "size", json_pack("[ii]", report->desc.width, report->desc.height));
+    put(json, root, "method", string(method_info(report->desc.method)->name));
+    put(json, root, "passes", json_integer(ref->peels));
+    put(json, root, "profile", string(report->seed_profile ? "seed" : "default"));
+    put(json, root, "fma", json_boolean(ref->fused));
+    put(json, root, "agree", json_boolean(report->agree));
+    put(json, root, "tolerance", real(report->tolerance));
+    put(json, root, "renderers", renderers(json, report));
+    put(json, root, "pairs", pairs(json, report));
+    put(json, root, "layers", layers(json, report));
     json_t *residual = json_object();
-    json_object_set_new(residual, "max", real(ref->residual_max));
-    json_object_set_new(residual, "pixels", count(ref->residual_pixels));
-    json_object_set_new(root, "residual", residual);
+    put(json, residual, "max", real(ref->residual_max));
+    put(json, residual, "pixels", count(ref->residual_pixels));
+    put(json, root, "residual", residual);
     return root;
 }
 
-static int put(const char *text, size_t size, void *writer)
+static int write_text(const char *text, size_t size, void *writer)
 {
     return file_writer_put(writer, text, size) == RESULT_OK ? 0 : -1;
 }
 
 Result report_json_write(const Threeway *report, const char *path)
 {
-    json_t *root = document(report);
+    Document json = {0};
     FileWriter writer;
+    json_t *root = document(&json, report);
     Result result = file_writer_open(path, &writer);
     if (result == RESULT_OK) {
-        int dumped = root ? json_dump_callback(root, put, &writer, JSON_INDENT(1)) : -1;
+        int dumped =
+            json.failed ? -1 : json_dump_callback(root, write_text, &writer, JSON_INDENT(1));
         file_writer_put(&writer, "\n", 1);
         bool failed = dumped != 0 && !writer.error;
         result = file_writer_close(&writer, !failed);

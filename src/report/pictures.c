@@ -4,10 +4,14 @@
 #include "image/png.h"
 #include "report/heatmap.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum {
     SCALE_WIDTH = 512,
@@ -146,5 +150,47 @@ Result pictures_write(const Threeway *report, const char *dir)
     }
     for (size_t i = 0; i < report->peel_count && result == RESULT_OK; i++)
         result = write_peel(&report->peels[i], dir);
+    return result;
+}
+
+/* Whether name is that of a peel's picture, and none of the report's. */
+static bool is_stale(const Threeway *report, const char *name)
+{
+    PeelPicture peel = {0};
+    char accum[PICTURES_NAME], added[PICTURES_NAME];
+    if (sscanf(name, "peel-%9d-", &peel.peel) != 1)
+        return false;
+    if (strcmp(name, pictures_accum(&peel, accum)) != 0 &&
+        strcmp(name, pictures_added(&peel, added)) != 0)
+        return false;
+    for (size_t i = 0; i < report->peel_count; i++)
+        if (report->peels[i].peel == peel.peel)
+            return false;
+    return peel.peel >= 0;
+}
+
+static Result remove_file(const char *path)
+{
+    struct stat status;
+    if (lstat(path, &status) != 0 || !S_ISREG(status.st_mode) || unlink(path) == 0)
+        return RESULT_OK;
+    return result_fail(RESULT_IO, "%s: cannot remove this picture of an earlier report: %s", path,
+                       strerror(errno));
+}
+
+Result pictures_remove_stale(const Threeway *report, const char *dir)
+{
+    DIR *directory = opendir(dir);
+    if (!directory)
+        return result_fail(RESULT_IO, "%s: cannot list this directory: %s", dir, strerror(errno));
+    Result result = RESULT_OK;
+    for (struct dirent *entry; result == RESULT_OK && (entry = readdir(directory));) {
+        if (!is_stale(report, entry->d_name))
+            continue;
+        char *path = pictures_path(dir, entry->d_name);
+        result = path ? remove_file(path) : RESULT_NO_MEMORY;
+        free(path);
+    }
+    closedir(directory);
     return result;
 }

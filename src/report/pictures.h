@@ -22,6 +22,10 @@ const char *pictures_added(const PeelPicture *peel, char out[PICTURES_NAME]);
  * power 1/2.2; where a layer has no fragment they show a checkerboard. */
 Result pictures_write(const Threeway *report, const char *dir);
 
+/* Removes the pictures of peels that are not among the report's: files that pictures_accum and
+ * pictures_added name, and no others. IO with a message when one stays. */
+Result pictures_remove_stale(const Threeway *report, const char *dir);
+
 /* dir/name, allocated; NULL and a message when memory is exhausted. */
 char *pictures_path(const char *dir, const char *name);
 

@@ -111,10 +111,13 @@ static void describe_passes(const Threeway *report, char *out, size_t size)
 
 static void describe_lights(const Threeway *report, char *out, size_t size)
 {
-    if (report->desc.lights > 0)
-        snprintf(out, size, "first %d", report->desc.lights);
+    int limit = report->desc.lights;
+    if (limit < 0)
+        snprintf(out, size, "none");
+    else if (limit == 0 || (size_t)limit >= report->light_count)
+        snprintf(out, size, "all %zu of the scene", report->light_count);
     else
-        snprintf(out, size, "%s", report->desc.lights < 0 ? "none" : "all of the scene");
+        snprintf(out, size, "first %d of %zu", limit, report->light_count);
 }
 
 int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS])
@@ -179,6 +182,15 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
 {
     const PairReport *pair = &report->pairs[1];
     const UnaffectedMetrics *unaffected = &pair->unaffected;
+    if (!report->structure.same_scene) {
+        char flips[SUMMARY_NUMBER], sets[SUMMARY_NUMBER];
+        snprintf(out, SUMMARY_LINE,
+                 "ref and truth differ: they see other surfaces, %s opaque pixels and %s fragments "
+                 "are not the same.",
+                 summary_count(report->structure.opaque_flips, flips),
+                 summary_count(report->structure.set_differs, sets));
+        return;
+    }
     if (!unaffected->pixels) {
         snprintf(out, SUMMARY_LINE,
                  "ref and truth cannot be compared: no pixel has the same fragments in the same "

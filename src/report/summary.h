@@ -46,6 +46,9 @@ typedef struct SummarySetting {
 /* Returns how many there are, at most SUMMARY_SETTINGS. */
 int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS]);
 
+/* Below every table of times. */
+#define SUMMARY_TIME_NOTE "gl's time includes compiling its shaders."
+
 /* One sentence each. */
 void summary_pair_exact(const Threeway *report, char out[SUMMARY_LINE]); /* ref against gl */
 void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE]); /* ref against truth */

@@ -114,6 +114,7 @@ static void print_times(const Threeway *report, FILE *out)
                 (double)frame->buffer_bytes / 1048576.0, frame->version,
                 frame->version[0] && frame->renderer[0] ? ", " : "", frame->renderer);
     }
+    fprintf(out, "(" SUMMARY_TIME_NOTE ")\n");
     summary_speed(report, line);
     if (line[0])
         fprintf(out, "%s\n", line);

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "scene/shapes.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static char *copy_name(Builder *builder, const char *name)

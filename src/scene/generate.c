@@ -12,13 +12,10 @@
 
 /* ---- pieces --------------------------------------------------------------------------------- */
 
-/* The double nearest to x that a float can hold. Through memory: gcc 12.2 leaves the rounding out
- * where it vectorises two neighbouring conversions to float and back (at -O2 and -O3, unless
- * -fno-tree-slp-vectorize). */
+/* The double nearest to x that a float can hold. (The build keeps gcc from leaving this out.) */
 static double float_value(double x)
 {
-    volatile float rounded = (float)x;
-    return (double)rounded;
+    return (double)(float)x;
 }
 
 /* Placements are rounded to float, so that a file keeps them exactly whoever reads it. */
@@ -89,7 +86,8 @@ static Matrix lying(double x, double y, double z)
 
 /* ---- teapot_hall and teapot_hall_stress ----------------------------------------------------- */
 
-/* Source: L. Rapetta's program (sources.md, 000): planes of 5 × 5 teapots in a bevelled room. */
+/* Source: L. Rapetta's program, public repository rapfamily4/DeferredTransparency: planes of 5 × 5
+ * teapots in a bevelled room. */
 typedef struct HallPlane {
     const char *name;
     double z;

@@ -78,6 +78,20 @@ static void close_file(struct aiFileIO *io, struct aiFile *file)
     free(file);
 }
 
+/* Assimp joins a buffer's uri to the document's folder without decoding it. */
+static bool read_buffer(const char *document, const char *joined, MemoryFile *out)
+{
+    const char *slash = strrchr(document, '/');
+    size_t folder = slash ? (size_t)(slash - document) + 1 : 0;
+    const char *uri = strncmp(joined, document, folder) == 0 ? joined + folder : joined;
+    char *path = NULL;
+    bool read = gltf_file_beside(document, uri, &path) == RESULT_OK &&
+                gltf_file_read(path, &out->owned, &out->count) == RESULT_OK;
+    free(path);
+    out->bytes = out->owned;
+    return read;
+}
+
 /* The reduced document under the file's own name; everything else is an external buffer. */
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
 {
@@ -93,9 +107,7 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     }
     if (strcmp(path, document->path) == 0) {
         *memory = (MemoryFile){.bytes = document->bytes, .count = document->count};
-    } else if (gltf_file_read(path, &memory->owned, &memory->count) == RESULT_OK) {
-        memory->bytes = memory->owned;
-    } else {
+    } else if (!read_buffer(document->path, path, memory)) {
         free(file);
         free(memory);
         return NULL;

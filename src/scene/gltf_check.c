@@ -1,6 +1,6 @@
 #include "scene/gltf_check.h"
 
-#include "base/memory.h"
+#include "scene/gltf_file.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,10 +14,6 @@ enum {
     TYPE_UINT32 = 5125,
     TYPE_FLOAT
 };
-enum {
-    MODE_TRIANGLES = 4,
-    MODE_FAN = 6
-};
 
 static Result check_arrays(const GltfCheck *check)
 {
@@ -28,8 +24,11 @@ static Result check_arrays(const GltfCheck *check)
         size_t i;
         if (array && !json_is_array(array))
             return result_fail(RESULT_BAD_INPUT, "%s: %s: expected an array", check->path, keys[k]);
-        json_array_foreach(array, i, element) if (!json_is_object(element)) return gltf_fail(
-            check, keys[k], i, "an object");
+        json_array_foreach(array, i, element)
+        {
+            if (!json_is_object(element))
+                return gltf_fail(check, keys[k], i, "an object");
+        }
     }
     return RESULT_OK;
 }
@@ -61,17 +60,14 @@ static Result check_extensions(const GltfCheck *check)
 static Result check_external(const GltfCheck *check, size_t index, const json_t *buffer)
 {
     const char *uri = json_string_value(json_object_get(buffer, "uri"));
-    const char *slash = strrchr(check->path, '/');
-    size_t folder = slash ? (size_t)(slash - check->path) + 1 : 0;
     size_t expected = gltf_json_index(buffer, "byteLength", 0);
     struct stat info;
     if (!uri || strncmp(uri, "data:", 5) == 0)
         return RESULT_OK;
-    char *path = memory_array(folder + strlen(uri) + 1, 1);
-    if (!path)
-        return RESULT_NO_MEMORY;
-    memcpy(path, check->path, folder);
-    strcpy(path + folder, uri);
+    char *path = NULL;
+    Result result = gltf_file_beside(check->path, uri, &path);
+    if (result)
+        return result;
     bool found = stat(path, &info) == 0 && S_ISREG(info.st_mode);
     free(path);
     if (!found)
@@ -288,7 +284,11 @@ static bool positive(const json_t *numbers)
 {
     const json_t *number;
     size_t i;
-    json_array_foreach(numbers, i, number) if (json_number_value(number) > 0.0) return true;
+    json_array_foreach(numbers, i, number)
+    {
+        if (json_number_value(number) > 0.0)
+            return true;
+    }
     return false;
 }
 
@@ -351,7 +351,11 @@ bool gltf_valid_numbers(const json_t *value, size_t count)
         return true;
     if (!json_is_array(value) || json_array_size(value) != count)
         return false;
-    json_array_foreach(value, i, element) if (!json_is_number(element)) return false;
+    json_array_foreach(value, i, element)
+    {
+        if (!json_is_number(element))
+            return false;
+    }
     return true;
 }
 
@@ -370,7 +374,5 @@ Result gltf_check(const char *path, GltfJson *json)
         result = check_views(&check);
     if (!result)
         result = check_meshes(&check);
-    if (!result)
-        result = check_materials(&check);
-    return result ? result : gltf_graph_check(&check);
+    return result ? result : check_materials(&check);
 }

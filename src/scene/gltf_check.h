@@ -1,5 +1,5 @@
-/* The checks behind gltf_json_read: gltf_check.c for buffers, accessors, meshes and materials,
- * gltf_graph.c for nodes and what hangs on them. The first breach is the message. */
+/* The checks of buffers, accessors, meshes and materials, and what all checks are made with. The
+ * first breach is the message. */
 #ifndef PEEL_SCENE_GLTF_CHECK_H
 #define PEEL_SCENE_GLTF_CHECK_H
 
@@ -11,11 +11,8 @@ typedef struct GltfCheck {
     GltfJson *json;
 } GltfCheck;
 
-/* Checks json->root, sets its scene and notes. */
+/* Checks json->root but for its graph, sets its notes. */
 Result gltf_check(const char *path, GltfJson *json);
-
-/* The part about scenes, nodes, cameras and lights. */
-Result gltf_graph_check(const GltfCheck *check);
 
 /* BAD_INPUT, "PATH: WHAT INDEX: expected EXPECTED". */
 Result gltf_fail(const GltfCheck *check, const char *what, size_t index, const char *expected);

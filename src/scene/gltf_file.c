@@ -40,6 +40,42 @@ Result gltf_file_read(const char *path, unsigned char **bytes, size_t *count)
     return result;
 }
 
+static int digit_value(char c)
+{
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    char lower = (char)(c | 32);
+    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+Result gltf_file_beside(const char *path, const char *uri, char **out)
+{
+    const char *slash = strrchr(path, '/');
+    size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
+    char *beside = memory_array(folder + strlen(uri) + 1, 1);
+    if (!beside)
+        return RESULT_NO_MEMORY;
+    memcpy(beside, path, folder);
+    char *end = beside + folder;
+    for (const char *c = uri; *c; c++) {
+        if (*c != '%') {
+            *end++ = *c;
+            continue;
+        }
+        int high = digit_value(c[1]), low = high < 0 ? -1 : digit_value(c[2]);
+        if (low < 0 || high + low == 0) {
+            free(beside);
+            return result_fail(
+                RESULT_BAD_INPUT,
+                "%s: uri %s: expected two hexadecimal digits, not 00, after every %%", path, uri);
+        }
+        *end++ = (char)(16 * high + low);
+        c += 2;
+    }
+    *out = beside;
+    return RESULT_OK;
+}
+
 int gltf_file_kind(const char *path)
 {
     const char *dot = strrchr(path, '.');

@@ -1,3 +1,5 @@
+#include "scene/gltf_graph.h"
+
 #include "base/memory.h"
 #include "scene/gltf_check.h"
 
@@ -160,22 +162,23 @@ static Result check_tree(const GltfCheck *check, size_t *parents, size_t count)
     return check_depth(check, parents, count);
 }
 
-Result gltf_graph_check(const GltfCheck *check)
+Result gltf_graph_check(const char *path, GltfJson *json)
 {
-    const json_t *chosen = gltf_array(check, "scene");
-    size_t scenes = gltf_count(check, "scenes"), nodes = gltf_count(check, "nodes");
+    const GltfCheck check = {path, json};
+    const json_t *chosen = gltf_array(&check, "scene");
+    size_t scenes = gltf_count(&check, "scenes"), nodes = gltf_count(&check, "nodes");
     if (scenes == 0 || !gltf_valid_index(chosen, scenes))
         return result_fail(RESULT_BAD_INPUT, "%s: no scene to draw, expected one in \"scenes\"",
-                           check->path);
-    check->json->scene = chosen ? (size_t)json_integer_value(chosen) : 0;
+                           path);
+    json->scene = chosen ? (size_t)json_integer_value(chosen) : 0;
     if (scenes > 1)
-        gltf_note(check, NOTE_SCENES);
-    if (gltf_count(check, "animations"))
-        gltf_note(check, NOTE_ANIMATIONS);
+        gltf_note(&check, NOTE_SCENES);
+    if (gltf_count(&check, "animations"))
+        gltf_note(&check, NOTE_ANIMATIONS);
     size_t *parents = memory_array(nodes, sizeof *parents);
     if (!parents)
         return RESULT_NO_MEMORY;
-    Result result = check_tree(check, parents, nodes);
+    Result result = check_tree(&check, parents, nodes);
     free(parents);
     return result;
 }

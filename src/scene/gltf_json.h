@@ -1,9 +1,10 @@
-/* The JSON of a glTF 2.0 file: checked, and reduced to what Peel models.
+/* The JSON of a checked glTF 2.0 file: looked up, and reduced to what Peel models.
  *
  * Assimp 5.2.5 trusts its input in places (a skin without matrices, a line loop without a valid
  * index and a nested graph crash or hang it), drops triangles with bad indices behind a log line,
  * and loses what its scene has no place for (no zfar, which node holds which light). So it is
- * given only geometry, materials and nodes, after they are checked here; the rest is read here.
+ * given only geometry, materials and nodes, after gltf_read has checked them; the rest is taken
+ * from here.
  *
  * Source: glTF 2.0 specification, chapters 3 to 5; KHR_lights_punctual. */
 #ifndef PEEL_SCENE_GLTF_JSON_H
@@ -14,6 +15,12 @@
 #include <jansson.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* A primitive's mode: those from triangles to fan are drawn. */
+enum {
+    MODE_TRIANGLES = 4,
+    MODE_FAN = 6
+};
 
 /* What a file may have and Peel does not model; a bit each. */
 typedef enum GltfNote {
@@ -42,11 +49,7 @@ typedef struct GltfJson {
     uint32_t notes; /* 1 << GltfNote */
 } GltfJson;
 
-/* Reads and checks a file: every reference and extent that geometry and nodes rest on, nodes form
- * a tree. BAD_INPUT, IO, NO_MEMORY, UNSUPPORTED (version 1, a required extension that changes the
- * geometry); *out is then empty. Free with gltf_json_free. */
-Result gltf_json_read(const char *path, GltfJson *out);
-void gltf_json_free(GltfJson *json);
+void gltf_json_free(GltfJson *json); /* what gltf_read made */
 
 /* A new document with nothing but triangles, materials' factors and nodes; NULL without memory.
  * The indices of nodes, meshes and materials are kept. */

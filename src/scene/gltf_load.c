@@ -2,8 +2,8 @@
 #include "scene/builder.h"
 #include "scene/gltf.h"
 #include "scene/gltf_assimp.h"
-#include "scene/gltf_json.h"
 #include "scene/gltf_mesh.h"
+#include "scene/gltf_read.h"
 
 #include <assimp/material.h>
 #include <assimp/scene.h>
@@ -39,11 +39,22 @@ static Result fail(Loader *loader, const char *expected)
 
 /* ---- materials ------------------------------------------------------------------------------ */
 
+/* The array functions: those of one value are inline in Assimp's header and nowhere else, so that a
+ * build without inlining does not link. */
 static float material_float(const struct aiMaterial *from, const char *key, float fallback)
 {
     float value = fallback;
-    aiGetMaterialFloat(from, key, 0, 0, &value);
+    unsigned room = 1;
+    aiGetMaterialFloatArray(from, key, 0, 0, &value, &room);
     return value;
+}
+
+static bool material_flag(const struct aiMaterial *from, const char *key)
+{
+    int value = 0;
+    unsigned room = 1;
+    aiGetMaterialIntegerArray(from, key, 0, 0, &value, &room);
+    return value != 0;
 }
 
 /* Assimp fills in glTF's defaults: base colour 1, metallic 1, roughness 1, OPAQUE, cutoff 0.5. */
@@ -52,17 +63,15 @@ static uint32_t add_material(Loader *loader, const struct aiMaterial *from)
     Material material = {.occlusion = 1.0f};
     struct aiColor4D color = {1.0f, 1.0f, 1.0f, 1.0f};
     struct aiString mode = {0}, name = {0};
-    int double_sided = 0;
     aiGetMaterialColor(from, "$clr.base", 0, 0, &color);
     aiGetMaterialString(from, "$mat.gltf.alphaMode", 0, 0, &mode);
     aiGetMaterialString(from, "?mat.name", 0, 0, &name);
-    aiGetMaterialInteger(from, "$mat.twosided", 0, 0, &double_sided);
     memcpy(material.base_color, (const float[4]){color.r, color.g, color.b, color.a},
            sizeof material.base_color);
     material.metallic = material_float(from, "$mat.metallicFactor", 1.0f);
     material.roughness = material_float(from, "$mat.roughnessFactor", 1.0f);
     material.alpha_cutoff = material_float(from, "$mat.gltf.alphaCutoff", 0.5f);
-    material.double_sided = double_sided != 0;
+    material.double_sided = material_flag(from, "$mat.twosided");
     if (strcmp(mode.data, "BLEND") == 0)
         material.alpha_mode = ALPHA_BLEND;
     else if (strcmp(mode.data, "MASK") == 0)
@@ -91,7 +100,7 @@ static uint32_t find_mesh(Loader *loader, const json_t *primitive, const struct 
                    .normal = gltf_json_index(attributes, "NORMAL", SIZE_MAX),
                    .uv = gltf_json_index(attributes, "TEXCOORD_0", SIZE_MAX),
                    .indices = gltf_json_index(primitive, "indices", SIZE_MAX),
-                   .mode = gltf_json_index(primitive, "mode", 4)};
+                   .mode = gltf_json_index(primitive, "mode", MODE_TRIANGLES)};
     for (size_t i = 0; i < loader->key_count; i++) {
         const MeshKey *known = &loader->keys[i];
         if (known->position == key.position && known->normal == key.normal && known->uv == key.uv &&
@@ -109,7 +118,8 @@ static uint32_t find_mesh(Loader *loader, const json_t *primitive, const struct 
                                              key.indices != SIZE_MAX ? key.indices : key.position);
     size_t count = gltf_json_index(source, "count", 0);
     Mesh mesh = {0};
-    Result made = gltf_mesh_convert(from, key.mode == 4 ? count / 3 : count - 2, label, &mesh);
+    Result made =
+        gltf_mesh_convert(from, key.mode == MODE_TRIANGLES ? count / 3 : count - 2, label, &mesh);
     key.mesh = builder_mesh(&loader->builder, made, &mesh);
     loader->keys[loader->key_count++] = key;
     return key.mesh;
@@ -317,7 +327,7 @@ Result gltf_load(const char *path, Scene *out)
 {
     *out = (Scene){0};
     GltfJson json;
-    Result result = gltf_json_read(path, &json);
+    Result result = gltf_read(path, &json);
     if (result)
         return result;
     Loader loader = {.path = path, .json = &json};

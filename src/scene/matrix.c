@@ -1,7 +1,6 @@
 #include "scene/matrix.h"
 
 #include <math.h>
-#include <stddef.h>
 
 /* π/2 in three parts: the first two have 33 significant bits, so that their products with a
  * quadrant number below 2^17 are exact. Source: W. J. Cody, W. Waite, "Software Manual for the

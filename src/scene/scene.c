@@ -86,6 +86,12 @@ static Result check_mesh(size_t number, const Mesh *mesh)
     Result result = check_floats(number, "position", mesh->position, mesh->vertex_count, 3);
     if (!result)
         result = check_floats(number, "normal", mesh->normal, mesh->vertex_count, 3);
+    for (size_t i = 0; !result && i < (size_t)mesh->vertex_count * 3; i++)
+        if (fabsf(mesh->normal[i]) > (float)COORDINATE_LIMIT) /* its square must not overflow */
+            result = result_fail(RESULT_BAD_INPUT,
+                                 "mesh %zu: normal of vertex %zu has component %g, expected within "
+                                 "1e15",
+                                 number, i / 3, (double)mesh->normal[i]);
     if (!result && mesh->uv)
         result = check_floats(number, "texture coordinate", mesh->uv, mesh->vertex_count, 2);
     if (result)

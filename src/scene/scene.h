@@ -78,7 +78,8 @@ uint64_t scene_triangle_count(const Scene *scene); /* over all instances */
 
 /* Every rule stated above; BAD_INPUT names the first breach as "mesh 3: ...". Loaders and
  * generators end with it, so renderers need not check again. Also: names and arrays are present,
- * a mesh has a vertex and a triangle, nothing in world space lies beyond 1e15 from the origin,
+ * a mesh has a vertex and a triangle, nothing in world space lies beyond 1e15 from the origin, no
+ * component of a normal beyond 1e15,
  * light is at most 1e12 and c + 0.01·l + 1e-4·q of its attenuation at least 1e-8 (so that single
  * precision cannot overflow), and there are fewer than 2^32 − 1 triangles over all instances.
  * Zero-area triangles and singular instance matrices are legal. NO_MEMORY is possible. */

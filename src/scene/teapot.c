@@ -1,10 +1,8 @@
 #include "scene/teapot.h"
 
-#include "base/memory.h"
 #include "scene/shapes.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The published data have z up, the axis of revolution at x = y = 0, the base at z = 0. */

@@ -27,7 +27,8 @@ typedef struct StructureReport {
     uint64_t order_inversions; /* adjacent fragments that truth orders the other way */
     uint64_t opaque_flips;     /* pixels whose nearest opaque triangle differs */
     uint64_t set_differs;      /* fragments that only one side has, ties and limit apart */
-    uint8_t *same;             /* width·height: 1 where fragments and order agree */
+    bool same_scene; /* opaque_flips and set_differs within 1 % of pixels and fragments, or 4 */
+    uint8_t *same;   /* width·height: a StructureSame each */
 } StructureReport;
 
 /* One peel, for pictures: ref's accumulation after it, and what it added. */
@@ -41,6 +42,7 @@ typedef struct PeelPicture {
 typedef struct Threeway {
     const char *scene_name, *scene_path;
     RenderDesc desc;
+    size_t light_count; /* of the scene, whatever desc draws */
     bool seed_profile;
     double tolerance;
     Frame frames[RENDERER_COUNT];

@@ -8,6 +8,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 failed=0
 passed=0
+sink=/dev/null # for standard output
 
 # refuse WHAT PATTERN ARGUMENT...: exit 4, one stderr line that has PATTERN, no new file.
 refuse() {
@@ -15,12 +16,12 @@ refuse() {
     pattern=$2
     shift 2
     before=$(find . | sort)
-    "$peel" "$@" >"$work/../peel-out.$$" 2>"$work/../peel-err.$$"
+    "$peel" "$@" >"$sink" 2>"$work/../peel-err.$$"
     code=$?
     after=$(find . | sort)
     lines=$(wc -l <"$work/../peel-err.$$")
     text=$(cat "$work/../peel-err.$$")
-    rm -f "$work/../peel-out.$$" "$work/../peel-err.$$"
+    rm -f "$work/../peel-err.$$"
     if [ $code != 4 ] || [ "$lines" != 1 ] || [ "$before" != "$after" ] ||
         ! printf '%s' "$text" | grep -q -- "$pattern"; then
         echo "FAIL $what: exit $code (expected 4), $lines lines (expected 1), '$text'" \
@@ -32,7 +33,7 @@ refuse() {
     fi
 }
 
-mkdir directory readonly
+mkdir directory directory.exr
 : >empty.gltf
 : >empty.glb
 echo 'hello' >text.gltf
@@ -44,7 +45,6 @@ head -c 2000 "$scenes/chain.gltf" >truncated.gltf
 head -c 3000 whole.glb >truncated.glb
 head -c 19 whole.glb >header.glb
 sed 's/"count": *[0-9]*/"count": 99999999/' "$scenes/crossing_planes.gltf" >count.gltf
-sed 's/"baseColorFactor"/"baseColourFactor"/' "$scenes/crossing_planes.gltf" >unknown_key.gltf
 
 out="-o out.png"
 # shellcheck disable=SC2086 # $out is two words
@@ -66,10 +66,17 @@ out="-o out.png"
     refuse 'size text' '--size' render tutorial $out --size big
     refuse 'size trailing' '--size' render tutorial $out --size 10x10x
     refuse 'memory' 'max-memory' render tutorial $out --size 4096x4096 --max-memory 1M
-    refuse 'memory, gl' 'limit' render tutorial $out --with gl --size 4096x4096 --max-memory 1M
-    refuse 'memory, truth' 'at most' render tutorial $out --with truth --size 4096x4096 --max-memory 1K
+    refuse 'memory, gl' 'max-memory' render tutorial $out --with gl --size 4096x4096 --max-memory 1M
+    refuse 'memory, truth' 'max-memory' render tutorial $out --with truth --size 4096x4096 --max-memory 1K
     refuse 'unknown option' 'bogus' render tutorial $out --bogus
+    refuse 'hidden option' 'HANG' render tutorial $out --HANG
+    refuse 'hidden option' 'usage' compare --usage tutorial
+    refuse 'hidden option' '-?' render tutorial $out '-?'
     refuse 'option without value' 'lacks its value' render tutorial -o
+    refuse 'size with a space' '--size' render tutorial $out --size ' 8x8'
+    refuse 'line break' 'a b' render tutorial -o 'a
+b'
+    refuse 'misspelt scene' 'built-in scene' render tutoral $out
     refuse 'unknown method' '--method' render tutorial $out --method magic
     refuse 'unknown renderer' '--with' render tutorial $out --with vulkan
     refuse 'passes 0' '--passes' render tutorial $out --passes 0
@@ -89,7 +96,10 @@ out="-o out.png"
 refuse 'no output' '-o FILE' render tutorial
 refuse 'output extension' '.png or .exr' render tutorial -o out.jpg
 refuse 'output directory missing' 'nosuch/out.png' render tutorial --size 8x8 -o nosuch/out.png
-refuse 'output is a directory' 'directory' render tutorial --size 8x8 --trace ./directory/../directory.exr/x.exr
+refuse 'output is a directory' 'directory' render tutorial --size 8x8 --trace directory.exr
+refuse 'unwritable directory' '/proc/x.png' render tutorial --size 8x8 -o /proc/x.png
+refuse 'unwritable report' '/proc/x' compare tutorial --size 8x8 --report /proc/x
+refuse 'one file for two' 'another file' render tutorial --size 8x8 -o a.exr --trace a.exr
 refuse 'disk full' '/dev/full' compare tutorial --size 8x8 --json /dev/full
 refuse 'report below a file' 'text.gltf' compare tutorial --size 8x8 --report text.gltf/out
 refuse 'scene list: unknown' 'nosuch' scenes nosuch -o x.gltf
@@ -107,6 +117,12 @@ export LD_LIBRARY_PATH="$work/library"
 refuse 'no OSMesa' 'libosmesa6' render tutorial --size 8x8 --with gl -o gl.png
 refuse 'no OSMesa' 'libosmesa6' compare tutorial --size 8x8
 unset LD_LIBRARY_PATH
+
+for arguments in '--help' '--version' 'compare --help'; do
+    # shellcheck disable=SC2086 # words
+    sink=/dev/full
+    refuse "full disk under $arguments" 'standard output' $arguments
+done
 
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

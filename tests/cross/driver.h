@@ -55,7 +55,7 @@ static inline void driver_close(void)
 /* The driver's mode, found before a context of this test is current. */
 static inline void driver_open_after_mode(void)
 {
-    ck_assert_msg(gl_driver_fuses(&fused) == RESULT_OK, "%s", result_message());
+    ck_assert_msg(gl_driver_fuses(0, &fused) == RESULT_OK, "%s", result_message());
     driver_open();
 }
 

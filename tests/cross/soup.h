@@ -1,5 +1,6 @@
 /* Random triangle soups as scenes, made by a seed: opaque, masked and transparent materials,
- * mirrored instances, coplanar duplicates, triangles through every plane of the view volume. */
+ * mirrored instances, coplanar duplicates, triangles through every plane of the view volume, now
+ * and then one without area or a vertex without normal. */
 #ifndef PEEL_TESTS_SOUP_H
 #define PEEL_TESTS_SOUP_H
 
@@ -93,8 +94,11 @@ static inline void soup_make(Random *random, Soup *soup)
         uint32_t triangles = 1 + (uint32_t)(random_bits(random) % SOUP_TRIANGLES);
         for (uint32_t t = 0; t < triangles; t++)
             soup_triangle(random, &soup->position[m][9 * t], &soup->normal[m][9 * t]);
-        for (uint32_t i = 0; i < 3 * triangles; i++)
-            soup->index[m][i] = i;
+        for (uint32_t i = 0; i < 3 * triangles; i++) {
+            soup->index[m][i] = i % 31 == 2 ? i - 1 : i;
+            if (i % 17 == 0)
+                memset(&soup->normal[m][3 * i], 0, 3 * sizeof(float));
+        }
         soup->meshes[m] = (Mesh){.vertex_count = 3 * triangles,
                                  .triangle_count = triangles,
                                  .position = soup->position[m],

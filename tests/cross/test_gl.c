@@ -266,7 +266,7 @@ START_TEST(test_memory_limit)
     Frame frame;
     ck_assert_msg(gl_render(&scene, &desc, NULL, &frame) == RESULT_NO_MEMORY, "%s",
                   result_message());
-    ck_assert_ptr_nonnull(strstr(result_message(), "the limit is 100 MiB"));
+    ck_assert_ptr_nonnull(strstr(result_message(), "the limit is 102400 KiB"));
     ck_assert_ptr_null(frame.final.pixels);
     desc = (RenderDesc){.width = 0, .height = 5};
     ck_assert(gl_render(&scene, &desc, NULL, &frame) == RESULT_BAD_INPUT);
@@ -288,7 +288,7 @@ static int mode_of_child(const char *cpu_caps)
         else
             unsetenv("GALLIUM_OVERRIDE_CPU_CAPS");
         bool fused = false;
-        _exit(gl_driver_fuses(&fused) != RESULT_OK ? 2 : fused ? 1 : 0);
+        _exit(gl_driver_fuses(0, &fused) != RESULT_OK ? 2 : fused ? 1 : 0);
     }
     int status;
     ck_assert_int_eq(waitpid(child, &status, 0), child);

@@ -1,10 +1,12 @@
 /* The three renderers on the built-in scenes: ref and gl agree bit for bit in every buffer, truth
  * agrees within the tolerance, and a renderer that is broken on purpose is found out. */
+#include "base/memory.h"
 #include "testing.h"
 
 #include "gl/gl_renderer.h"
 #include "ref/pipeline/pipeline.h"
 #include "ref/truth/truth.h"
+#include "scene/builder.h"
 #include "scene/generate.h"
 #include "study/threeway.h"
 
@@ -140,6 +142,39 @@ START_TEST(test_empty_view)
         ck_assert_float_bits(pixel[1], 0.5f);
         ck_assert_float_bits(pixel[3], 0.0f);
     }
+    threeway_free(&report);
+    scene_free(&scene);
+}
+END_TEST
+
+/* A clipped triangle whose normals are so small that their plane equations are denormal: Mesa sets
+ * it up in the calling thread, which must flush as its own threads do. */
+START_TEST(test_tiny_varyings)
+{
+    float size = (float[]){1e-28f, 1e-30f, 1e-33f, 1e-36f, 1e-38f}[_i];
+    float position[] = {0, 0, 0, 0, -1.77f, 0, 1, 0, 1}, normal[] = {0, 0, 0, 0, 0, 0, size, 0, 0};
+    uint32_t index[] = {0, 1, 2};
+    Mesh mesh = {.vertex_count = 3, .triangle_count = 1};
+    mesh.position = memory_array(9, sizeof(float));
+    mesh.normal = memory_array(9, sizeof(float));
+    mesh.index = memory_array(3, sizeof(uint32_t));
+    memcpy(mesh.position, position, sizeof position);
+    memcpy(mesh.normal, normal, sizeof normal);
+    memcpy(mesh.index, index, sizeof index);
+
+    Builder builder = builder_begin("tiny");
+    builder_mesh(&builder, RESULT_OK, &mesh);
+    builder_material(&builder, &(Material){.base_color = {1, 1, 1, 1}, .occlusion = 1}, NULL);
+    builder_instance(&builder, &(Instance){.world = matrix_identity()}, NULL);
+    builder_camera(
+        &builder,
+        &(Camera){.world = matrix_translate(0, 0, 3), .yfov = 0.8, .near = 0.1, .far = 100}, NULL);
+    Scene scene;
+    ck_assert_msg(builder_finish(&builder, &scene) == RESULT_OK, "%s", result_message());
+
+    RenderDesc desc = {.width = 128, .height = 128};
+    Threeway report = run(&scene, &desc, honest);
+    check_ref_gl(&report);
     threeway_free(&report);
     scene_free(&scene);
 }
@@ -369,6 +404,7 @@ int main(void)
     tcase_add_test(tcase, test_pass_limit);
     tcase_add_test(tcase, test_nothing_transparent);
     tcase_add_test(tcase, test_empty_view);
+    tcase_add_loop_test(tcase, test_tiny_varyings, 0, 5);
     tcase_add_loop_test(tcase, test_broken_renderer, 0, FAULT_COUNT);
     tcase_add_test(tcase, test_blind_truth);
     tcase_add_test(tcase, test_wrong_truth);

@@ -53,6 +53,22 @@ static inline const char *write_quad(const float *floats, const char *members)
     return path;
 }
 
+/* One triangle without indices, its 36 bytes in the file that uri names. */
+static inline const char *write_external(const char *uri)
+{
+    char text[1024];
+    snprintf(text, sizeof text,
+             "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],"
+             "\"nodes\":[{\"mesh\":0}],\"buffers\":[{\"byteLength\":36,\"uri\":\"%s\"}],"
+             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+             "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+             uri);
+    const char *path = scratch_path("external.gltf");
+    write_text(path, text);
+    return path;
+}
+
 #define QUAD_MESH                                                                                  \
     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":2}]}]"
 #define ONE_NODE "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}]"

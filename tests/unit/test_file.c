@@ -123,6 +123,75 @@ START_TEST(test_symbolic_link_stays)
 }
 END_TEST
 
+/* A link to nothing: what it names is made, through links of links, relative and absolute. */
+START_TEST(test_dangling_link)
+{
+    char text[64];
+    ck_assert_int_eq(file_make_directories(scratch_path("links")), RESULT_OK);
+    ck_assert_int_eq(symlink("links/second", scratch_path("first")), 0);
+    ck_assert_int_eq(symlink("../third", scratch_path("links/second")), 0);
+    ck_assert_int_eq(symlink(scratch_path("a.txt"), scratch_path("third")), 0);
+    ck_assert_int_eq(file_write(scratch_path("first"), "new", 3), RESULT_OK);
+    static const char *const links[] = {"first", "links/second", "third"};
+    for (int i = 0; i < 3; i++) {
+        struct stat status;
+        ck_assert_int_eq(lstat(scratch_path(links[i]), &status), 0);
+        ck_assert_msg(S_ISLNK(status.st_mode), "the link %s was replaced", links[i]);
+    }
+    scratch_read(scratch_path("a.txt"), text, sizeof text);
+    ck_assert_str_eq(text, "new");
+    ck_assert_int_eq(scratch_entries(), 4);
+    ck_assert_int_eq(symlink("none/b.txt", scratch_path("astray")), 0);
+    ck_assert_int_eq(file_write(scratch_path("astray"), "x", 1), RESULT_IO);
+    ck_assert_int_eq(symlink("circle", scratch_path("circle")), 0);
+    ck_assert_int_eq(file_write(scratch_path("circle"), "x", 1), RESULT_IO);
+    ck_assert_int_eq(scratch_entries(), 6);
+}
+END_TEST
+
+/* The temporary name fits wherever the file's own does. */
+START_TEST(test_longest_name)
+{
+    char path[512], text[64];
+    int folder = snprintf(path, sizeof path, "%s/", scratch_directory);
+    memset(path + folder, 'n', 256);
+    path[folder + 255] = 0;
+    for (int i = 0; i < 2; i++)
+        ck_assert_msg(file_write(path, "whole", 5) == RESULT_OK, "%s", result_message());
+    scratch_read(path, text, sizeof text);
+    ck_assert_str_eq(text, "whole");
+    path[folder + 255] = 'n';
+    path[folder + 256] = 0;
+    ck_assert_int_eq(file_write(path, "whole", 5), RESULT_IO);
+    ck_assert_int_eq(scratch_entries(), 1);
+}
+END_TEST
+
+/* Several writers in one folder do not share a temporary file. */
+START_TEST(test_writers_side_by_side)
+{
+    enum {
+        WRITERS = 5
+    };
+    FileWriter writers[WRITERS];
+    char name[16], text[16];
+    for (int i = 0; i < WRITERS; i++) {
+        snprintf(name, sizeof name, "%d.txt", i);
+        ck_assert_int_eq(file_writer_open(scratch_path(name), &writers[i]), RESULT_OK);
+    }
+    for (int i = 0; i < WRITERS; i++) {
+        ck_assert_int_eq(file_writer_print(&writers[i], "%d", i), RESULT_OK);
+        ck_assert_int_eq(file_writer_close(&writers[i], true), RESULT_OK);
+    }
+    for (int i = 0; i < WRITERS; i++) {
+        snprintf(name, sizeof name, "%d.txt", i);
+        scratch_read(scratch_path(name), text, sizeof text);
+        ck_assert_int_eq(atoi(text), i);
+    }
+    ck_assert_int_eq(scratch_entries(), WRITERS);
+}
+END_TEST
+
 START_TEST(test_directories)
 {
     const char *path = scratch_path("a//b/c/");
@@ -148,6 +217,9 @@ int main(void)
     tcase_add_test(tests, test_full_disk);
     tcase_add_test(tests, test_pipe);
     tcase_add_test(tests, test_symbolic_link_stays);
+    tcase_add_test(tests, test_dangling_link);
+    tcase_add_test(tests, test_longest_name);
+    tcase_add_test(tests, test_writers_side_by_side);
     tcase_add_test(tests, test_directories);
     suite_add_tcase(suite, tests);
     return testing_run(suite);

@@ -1,5 +1,6 @@
 /* glTF out and in: what is written comes back, what is broken is refused, what is ignored is said.
  */
+#include "base/file.h"
 #include "scene/generate.h"
 
 #include "small_gltf.h"
@@ -126,6 +127,33 @@ START_TEST(unwritable_places)
 END_TEST
 
 /* ---- what a file means ---------------------------------------------------------------------- */
+
+/* A uri may have escapes; the document's own folder may have a % that is none. */
+START_TEST(escaped_buffer_names)
+{
+    static const char *const names[][2] = {
+        {"plain.bin", "plain.bin"},
+        {"my%20buf.bin", "my buf.bin"},
+        {"50%2525%25.bin", "50%25%.bin"},
+        {"%e2%9C%93/%61.bin", "\u2713/a.bin"},
+    };
+    Scene scene;
+    strcat(scratch_directory, "/100%41");
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char folder[128];
+        const char *path = scratch_path(names[i][1]), *slash = strrchr(path, '/');
+        snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
+        ck_assert_int_eq(file_make_directories(folder), RESULT_OK);
+        ck_assert_int_eq(file_write(path, quad, 36), RESULT_OK);
+        load(write_external(names[i][0]), &scene);
+        ck_assert_uint_eq(scene.meshes[0].vertex_count, 3);
+        ck_assert_mem_eq(scene.meshes[0].position, quad, 36);
+        scene_free(&scene);
+        ck_assert_int_eq(unlink(path), 0);
+    }
+    *strrchr(scratch_directory, '/') = 0;
+}
+END_TEST
 
 START_TEST(camera_field_is_vertical)
 {
@@ -345,6 +373,7 @@ int main(void)
     tcase_add_test(test, written_scenes_come_back);
     tcase_add_test(test, data_files_are_current);
     tcase_add_test(test, unwritable_places);
+    tcase_add_test(test, escaped_buffer_names);
     tcase_add_test(test, camera_field_is_vertical);
     tcase_add_test(test, defaults_where_the_file_says_nothing);
     tcase_add_test(test, material_factors);

@@ -67,19 +67,22 @@ START_TEST(truncated_files)
         refused_file(cut, RESULT_BAD_INPUT, "");
     }
     free(bytes);
-    path = scratch_path("external.gltf");
-    write_text(
-        path,
-        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
-        "\"buffers\":[{\"byteLength\":36,\"uri\":\"none.bin\"}],"
-        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
-        "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
-        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
+    path = write_external("none.bin");
     refused_file(path, RESULT_BAD_INPUT, "none.bin");
     FILE *file = fopen(scratch_path("none.bin"), "wb");
     fputs("short", file);
     fclose(file);
     refused_file(path, RESULT_BAD_INPUT, "none.bin is truncated: 5 bytes, expected 36");
+}
+END_TEST
+
+START_TEST(malformed_escapes)
+{
+    static const char *const uris[] = {"a%2", "a%", "a%%20", "%g0.bin", "%0", "a%00.bin", "%-1"};
+    for (size_t i = 0; i < sizeof uris / sizeof uris[0]; i++) {
+        refused_file(write_external(uris[i]), RESULT_BAD_INPUT, "two hexadecimal digits");
+        ck_assert_ptr_nonnull(strstr(result_message(), uris[i]));
+    }
 }
 END_TEST
 
@@ -242,6 +245,7 @@ int main(void)
     tcase_add_test(test, bad_files);
     tcase_add_test(test, deep_garbage);
     tcase_add_test(test, truncated_files);
+    tcase_add_test(test, malformed_escapes);
     tcase_add_test(test, broken_geometry);
     tcase_add_test(test, index_out_of_range);
     tcase_add_test(test, broken_nodes);

@@ -171,6 +171,31 @@ START_TEST(test_unaffected)
 }
 END_TEST
 
+/* Neither many background pixels hide a few wrong fragments, nor the other way round. */
+START_TEST(test_background)
+{
+    enum { PIXELS = 1000, FEW = 5 };
+    for (int wrong_background = 0; wrong_background < 2; wrong_background++) {
+        static float a[PIXELS][4], b[PIXELS][4];
+        uint8_t same[PIXELS];
+        memset(a, 0, sizeof a);
+        for (int p = 0; p < PIXELS; p++)
+            same[p] = p < FEW ? STRUCTURE_SAME : STRUCTURE_EMPTY;
+        if (wrong_background)
+            for (int p = FEW; p < PIXELS; p += 50)
+                a[p][1] = 0.25f;
+        else
+            a[FEW - 1][0] = 0.25f;
+        Image image_a = image_of(PIXELS, 1, a[0]), image_b = image_of(PIXELS, 1, b[0]);
+        UnaffectedMetrics metrics;
+        ck_assert_int_eq(metrics_unaffected(&image_a, &image_b, same, &metrics), RESULT_OK);
+        ck_assert_uint_eq(metrics.pixels, PIXELS);
+        ck_assert_uint_eq(metrics.occupied, FEW);
+        ck_assert_double_eq(metrics.p99_rel, 0.25);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("metrics");
@@ -182,6 +207,7 @@ int main(void)
     tcase_add_test(tcase, test_final_nothing_finite);
     tcase_add_test(tcase, test_percentile);
     tcase_add_test(tcase, test_unaffected);
+    tcase_add_test(tcase, test_background);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

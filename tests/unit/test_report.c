@@ -4,157 +4,10 @@
 #include "report/summary.h"
 #include "report/table.h"
 
-#include "scratch.h"
-#include "testing.h"
+#include "sample_report.h"
 
 #include <jansson.h>
 #include <math.h>
-
-enum {
-    WIDTH = 320,
-    HEIGHT = 180,
-    PEELS = 16,
-    PER_PEEL = 6,
-    BUFFERS = 5 + PEELS * PER_PEEL + 2
-};
-
-static Threeway report;
-static BufferMetrics buffers[BUFFERS];
-static PeelPicture peels[PEELS];
-
-static void fill(Image *image, int peel, bool layer)
-{
-    for (int y = 0; y < image->height; y++)
-        for (int x = 0; x < image->width; x++) {
-            float *pixel = image_pixel(image, x, y);
-            float u = (float)x / (float)image->width, v = (float)y / (float)image->height;
-            float du = u - 0.2f - 0.05f * (float)peel, dv = v - 0.5f;
-            bool inside = du * du + dv * dv < 0.03f;
-            pixel[0] = layer && !inside ? 0.0f : 0.8f * u;
-            pixel[1] = layer && !inside ? 0.0f : 0.5f * v;
-            pixel[2] = layer && !inside ? 0.0f : 0.1f * (float)(peel + 1);
-            pixel[3] = layer ? (inside ? 1.0f : 0.0f) : 0.5f;
-        }
-}
-
-static Image make_image(int width, int height, PixelFormat format)
-{
-    Image image;
-    ck_assert_int_eq(image_create(width, height, format, &image), RESULT_OK);
-    return image;
-}
-
-static void make_frames(void)
-{
-    for (int i = 0; i < RENDERER_COUNT; i++) {
-        Frame *frame = &report.frames[i];
-        frame->final = make_image(WIDTH, HEIGHT, FORMAT_RGBA32F);
-        frame->display = make_image(WIDTH, HEIGHT, FORMAT_RGBA8);
-        fill(&frame->final, 3, false);
-        for (int p = 0; p < WIDTH * HEIGHT * 4; p++)
-            ((uint8_t *)frame->display.pixels)[p] =
-                (uint8_t)(255 * ((float *)frame->final.pixels)[p]);
-        *frame = (Frame){.final = frame->final,
-                         .display = frame->display,
-                         .peels = PEELS,
-                         .time_ms = 100.0 * (i + 1),
-                         .cpu_ms = 190.0 * (i + 1),
-                         .threads = 2,
-                         .fused = true,
-                         .buffer_bytes = 12345678};
-        strcpy(frame->version, "1.0 <&> \"quoted\"");
-    }
-    /* Eight decades of difference from left to right, one NaN. */
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < WIDTH; x++)
-            *(float *)image_pixel(&report.frames[RENDERER_TRUTH].final, x, y) +=
-                y < 20 ? 0.0f : powf(10.0f, -8.0f + 8.0f * (float)x / WIDTH);
-    *(float *)image_pixel(&report.frames[RENDERER_TRUTH].final, 100, 100) = NAN;
-}
-
-static void name_buffers(void)
-{
-    static const char *const parts[PER_PEEL] = {"depth",   "normal",   "position",
-                                                "diffuse", "material", "accum"};
-    for (int i = 0; i < BUFFERS; i++) {
-        BufferMetrics *buffer = &buffers[i];
-        *buffer = (BufferMetrics){.values = WIDTH * HEIGHT * 4};
-        int peel = (i - 5) / PER_PEEL;
-        if (i < 5)
-            snprintf(buffer->name, sizeof buffer->name, "opaque.%s", parts[i]);
-        else if (i < BUFFERS - 2)
-            snprintf(buffer->name, sizeof buffer->name, "peel.%d.%s", peel, parts[(i - 5) % 6]);
-        else
-            strcpy(buffer->name, i == BUFFERS - 2 ? "accum" : "display");
-    }
-}
-
-static void make_pairs(void)
-{
-    static const int sides[3][2] = {
-        {RENDERER_REF, RENDERER_GL}, {RENDERER_REF, RENDERER_TRUTH}, {RENDERER_GL, RENDERER_TRUTH}};
-    for (int i = 0; i < 3; i++) {
-        PairReport *pair = &report.pairs[i];
-        *pair = (PairReport){.a = sides[i][0], .b = sides[i][1], .has_unaffected = i > 0};
-        pair->final = (FinalMetrics){.pixels = WIDTH * HEIGHT, .psnr = INFINITY};
-        if (i == 0)
-            continue;
-        pair->final = (FinalMetrics){.pixels = WIDTH * HEIGHT,
-                                     .differing = 51200,
-                                     .nonfinite = 1,
-                                     .max_abs = 0.97,
-                                     .mean_abs = 0.01,
-                                     .rmse = NAN,
-                                     .psnr = 31.4,
-                                     .max_ulp = UINT32_MAX};
-        pair->unaffected = (UnaffectedMetrics){57000, 1.25e-6, 1.25e-6, 3.5e-7};
-    }
-    report.pairs[0].buffers = buffers;
-    report.pairs[0].buffer_count = BUFFERS;
-}
-
-static void make_report(void)
-{
-    scratch_make();
-    report = (Threeway){.scene_name = "gradients <1> & \"2\"",
-                        .scene_path = "data/scenes/<gradients>'s.gltf",
-                        .desc = {.width = WIDTH, .height = HEIGHT, .lights = 16},
-                        .tolerance = 1e-4,
-                        .peels = peels,
-                        .peel_count = PEELS,
-                        .agree = true};
-    make_frames();
-    name_buffers();
-    make_pairs();
-    report.structure.layers = (LayerStats){PEELS, 345678, 9, 0, 0, 77};
-    report.structure.order_inversions = 3;
-    for (int i = 0; i < PEELS; i++) {
-        peels[i] = (PeelPicture){.peel = i, .pixels = 5000 - 100 * (uint64_t)i};
-        peels[i].accum = make_image(160, 90, FORMAT_RGBA32F);
-        peels[i].added = make_image(160, 90, FORMAT_RGBA32F);
-        fill(&peels[i].accum, i, false);
-        fill(&peels[i].added, i, true);
-    }
-}
-
-static void free_report(void)
-{
-    for (int i = 0; i < RENDERER_COUNT; i++)
-        frame_free(&report.frames[i]);
-    for (int i = 0; i < PEELS; i++) {
-        image_free(&peels[i].accum);
-        image_free(&peels[i].added);
-    }
-    scratch_remove();
-}
-
-/* peel.3.normal differs. */
-static void make_differ(void)
-{
-    BufferMetrics *buffer = &buffers[5 + 3 * PER_PEEL + 1];
-    *buffer = (BufferMetrics){"peel.3.normal", 230400, 17, 3, 2.4e-7, true, {12, 34, 2}};
-    report.agree = false;
-}
 
 static void assert_contains(const char *text, const char *part)
 {
@@ -212,6 +65,7 @@ START_TEST(test_table)
     assert_contains(text, "99th percentile of the relative difference 3.5e-07");
     assert_contains(text, "gl took 2.00 times the wall time of ref.");
     assert_contains(text, "equal");
+    assert_contains(text, "(gl's time includes compiling its shaders");
     make_differ();
     report.frames[RENDERER_REF].residual_pixels = 1234;
     report.frames[RENDERER_REF].residual_max = 0.25;
@@ -296,8 +150,9 @@ START_TEST(test_json)
          "{\"pixels\":57600,\"differing\":51200,\"max_abs\":0.97,\"mean_abs\":0.01,"
          "\"rmse\":null,\"psnr\":31.4,\"max_ulp\":4294967295,\"nonfinite\":1}"},
         {"pairs/2/a", "\"gl\""},
-        {"pairs/2/unaffected", "{\"pixels\":57000,\"max_abs\":1.25e-6,\"max_rel\":1.25e-6,"
-                               "\"p99_rel\":3.5e-7}"},
+        {"pairs/2/unaffected",
+         "{\"pixels\":57000,\"occupied\":41000,\"max_abs\":1.25e-6,\"max_rel\":1.25e-6,"
+         "\"p99_rel\":3.5e-7}"},
         {"layers", "{\"max\":16,\"fragments\":345678,\"lost_to_ties\":9,"
                    "\"lost_to_pass_limit\":0,\"order_inversions\":3,\"coverage_differs\":77,"
                    "\"opaque_flips\":0,\"repeated\":0,\"set_differs\":0}"},
@@ -333,6 +188,48 @@ START_TEST(test_json_of_an_odd_path)
 }
 END_TEST
 
+/* jansson's allocations are counted; the one at fail_at gives nothing. */
+static size_t allocations, fail_at;
+
+static void *failing_malloc(size_t size)
+{
+    return ++allocations == fail_at ? NULL : malloc(size);
+}
+
+/* Whichever allocation fails, there is the whole document or none. */
+START_TEST(test_json_without_memory)
+{
+    static char expected[65536], text[65536];
+    const char *path = scratch_path("report.json");
+    report.scene_path = "\xff";
+    report.pairs[0].buffer_count = 25;
+    make_differ(); /* the last of them */
+    ck_assert_int_eq(report_json_write(&report, path), RESULT_OK);
+    scratch_read(path, expected, sizeof expected);
+    size_t refused = 0;
+    bool reached = true;
+    json_set_alloc_funcs(failing_malloc, free);
+    for (fail_at = 1; reached; fail_at++) {
+        ck_assert_int_eq(unlink(path), 0);
+        allocations = 0;
+        Result result = report_json_write(&report, path);
+        reached = allocations >= fail_at;
+        if (result == RESULT_OK) { /* a string is tried twice */
+            scratch_read(path, text, sizeof text);
+            ck_assert_msg(strcmp(text, expected) == 0, "allocation %zu: another document", fail_at);
+            continue;
+        }
+        ck_assert_msg(reached && result == RESULT_NO_MEMORY, "allocation %zu of %zu: %s", fail_at,
+                      allocations, result_text(result));
+        ck_assert_int_eq(scratch_entries(), 0);
+        ck_assert_int_eq(file_write(path, "", 0), RESULT_OK);
+        refused++;
+    }
+    json_set_alloc_funcs(malloc, free);
+    ck_assert_uint_gt(refused, 500);
+}
+END_TEST
+
 START_TEST(test_html)
 {
     static char text[1 << 20];
@@ -351,6 +248,7 @@ START_TEST(test_html)
     assert_contains(text, "The renderers differ");
     assert_contains(text, "peel.3.normal");
     assert_contains(text, "Peel 12 ");
+    assert_contains(text, "<p>gl's time includes compiling its shaders");
     assert_lacks(text, "<script");
     assert_lacks(text, "http");
     assert_lacks(text, "<1>");
@@ -418,6 +316,53 @@ START_TEST(test_html_is_whole)
 }
 END_TEST
 
+/* A shorter report in the same folder takes the longer one's peels away, and nothing else. */
+START_TEST(test_stale_pictures)
+{
+    static const char *const foreign[] = {"peel-5-added.png",       "peel-007-added.png.txt",
+                                          "peel-0008-added.png",    "my-peel-009-added.png",
+                                          "peel-010-something.png", "peel--01-added.png"};
+    const int foreign_count = sizeof foreign / sizeof foreign[0];
+    ck_assert_int_eq(report_html_write(&report, "peel", scratch_directory), RESULT_OK);
+    int before = scratch_entries();
+    for (int i = 0; i < foreign_count; i++)
+        ck_assert_int_eq(file_write(scratch_path(foreign[i]), "x", 1), RESULT_OK);
+    ck_assert_int_eq(file_make_directories(scratch_path("peel-099-added.png")), RESULT_OK);
+    report.peel_count = 4;
+    ck_assert_int_eq(report_html_write(&report, "peel", scratch_directory), RESULT_OK);
+    ck_assert_int_eq(scratch_entries(), before + foreign_count + 1 - 2 * (PEELS - 4));
+    assert_file_exists("peel-003-added.png");
+    assert_file_exists("peel-099-added.png");
+    ck_assert_int_ne(access(scratch_path("peel-004-added.png"), F_OK), 0);
+    ck_assert_int_ne(access(scratch_path("peel-015-accumulated.png"), F_OK), 0);
+}
+END_TEST
+
+START_TEST(test_lights_of_the_scene)
+{
+    static const struct {
+        int limit;
+        const char *expected;
+    } rows[] = {{0, "all 12 of the scene"},
+                {-1, "none"},
+                {11, "first 11 of 12"},
+                {12, "all 12 of the scene"},
+                {99, "all 12 of the scene"}};
+    report.light_count = 12;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        SummarySetting settings[SUMMARY_SETTINGS];
+        report.desc.lights = rows[i].limit;
+        int count = summary_settings(&report, settings), found = 0;
+        for (int k = 0; k < count; k++)
+            if (strcmp(settings[k].name, "Lights") == 0) {
+                ck_assert_str_eq(settings[k].value, rows[i].expected);
+                found++;
+            }
+        ck_assert_int_eq(found, 1);
+    }
+}
+END_TEST
+
 START_TEST(test_html_failures)
 {
     const char *path = scratch_path("file");
@@ -445,8 +390,11 @@ int main(void)
     tcase_add_test(tests, test_numbers);
     tcase_add_test(tests, test_json);
     tcase_add_test(tests, test_json_of_an_odd_path);
+    tcase_add_test(tests, test_json_without_memory);
     tcase_add_test(tests, test_html);
     tcase_add_test(tests, test_html_is_whole);
+    tcase_add_test(tests, test_stale_pictures);
+    tcase_add_test(tests, test_lights_of_the_scene);
     tcase_add_test(tests, test_html_failures);
     suite_add_tcase(suite, tests);
     return testing_run(suite);

@@ -60,6 +60,8 @@ START_TEST(bad_meshes)
     scene.meshes[0].position[4] = kept;
     scene.meshes[0].normal[0] = INFINITY;
     refused("mesh 0: normal of vertex 0 is not finite");
+    scene.meshes[0].normal[0] = -1.1e15f;
+    refused("mesh 0: normal of vertex 0 has component -1.1e+15");
     scene.meshes[0].normal[0] = 0.0f;
     scene.meshes[0].index[5] = 4;
     refused("mesh 0: index 4 of triangle 1 is out of range");

@@ -156,7 +156,7 @@ START_TEST(test_empty_store)
     check_counts(counts, 0, WIDTH * HEIGHT, 4 * WIDTH * HEIGHT, 0);
     ck_assert_int_eq(structure_compare(empty, empty, WIDTH, HEIGHT, same[0], &counts), RESULT_OK);
     check_counts(counts, 0, 0, 0, 0);
-    ck_assert_int_eq(same[1][1], 1);
+    ck_assert_int_eq(same[1][1], STRUCTURE_EMPTY);
     store_destroy(store);
     store_destroy(empty);
 }

@@ -112,6 +112,29 @@ START_TEST(test_model_view)
 }
 END_TEST
 
+/* A normal matrix beyond single precision is scaled by a power of two, which changes no normal. */
+START_TEST(test_normal_matrix_scale)
+{
+    double sizes[] = {1e-30, 0x1p-100, 1.0, 0x1p100, 1e30};
+    float first[9];
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        instances[0].world = matrix_scale(sizes[i], sizes[i], 2 * sizes[i]);
+        View view = build((RenderDesc){.width = 64, .height = 64});
+        float largest = 0;
+        for (int k = 0; k < 9; k++) {
+            ck_assert(isfinite(view.draws[0].normal_matrix[k]));
+            largest = fmaxf(largest, fabsf(view.draws[0].normal_matrix[k]));
+        }
+        ck_assert(largest >= 0.5f && largest <= 1.0f);
+        if (i == 1)
+            memcpy(first, view.draws[0].normal_matrix, sizeof first);
+        else if (i == 2 || i == 3)
+            ck_assert_mem_eq(view.draws[0].normal_matrix, first, sizeof first);
+        view_free(&view);
+    }
+}
+END_TEST
+
 START_TEST(test_cull)
 {
     materials[1].double_sided = true;
@@ -180,6 +203,7 @@ START_TEST(test_limits)
         {.width = 64, .height = 64, .time = 1e7},
         {.width = 64, .height = 64, .accum = FORMAT_RGBA8},
         {.width = 64, .height = 64, .accum = FORMAT_RGBA16F},
+        {.width = 64, .height = 64, .depth = FORMAT_R32UI},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         View view;
@@ -190,8 +214,21 @@ START_TEST(test_limits)
     }
     View view = build((RenderDesc){.width = SIZE_MAX_PIXELS, .height = 1, .passes = PASSES_MAX});
     view_free(&view);
-    cameras[0].world = matrix_scale(0, 1, 1);
     RenderDesc desc = {.width = 64, .height = 64};
+    const Camera good = cameras[0];
+    const Camera extreme[] = {
+        {.yfov = 5e-39, .near = 0.1, .far = 100},
+        {.yfov = 1, .near = 1e-39, .far = 100},
+        {.yfov = 1, .near = 1e10, .far = 1e300},
+    };
+    for (size_t i = 0; i < sizeof extreme / sizeof extreme[0]; i++) {
+        cameras[0].yfov = extreme[i].yfov;
+        cameras[0].near = extreme[i].near;
+        cameras[0].far = extreme[i].far;
+        ck_assert_msg(view_build(&scene, &desc, &view) == RESULT_BAD_INPUT, "camera %zu", i);
+    }
+    cameras[0] = good;
+    cameras[0].world = matrix_scale(0, 1, 1);
     ck_assert_int_eq(view_build(&scene, &desc, &view), RESULT_BAD_INPUT);
 }
 END_TEST
@@ -204,6 +241,7 @@ int main(void)
     tcase_add_test(tcase, test_projection);
     tcase_add_test(tcase, test_draws);
     tcase_add_test(tcase, test_model_view);
+    tcase_add_test(tcase, test_normal_matrix_scale);
     tcase_add_test(tcase, test_cull);
     tcase_add_test(tcase, test_lights);
     tcase_add_test(tcase, test_limits);

@@ -6,8 +6,10 @@
  * Opaque geometry pass; then peels, each a geometry pass that keeps the nearest fragment behind
  * the previous peel and in front of the opaque depth, and a lighting pass blended under; then the
  * opaque lighting pass, blended under; then the background. Two depth buffers take turns; the
- * colour buffers of the peels are shared. A pass is a task per tile: pixels do not depend on each
+ * color buffers of the peels are shared. A pass is a task per tile: pixels do not depend on each
  * other, so neither the order of tiles nor the number of threads changes a bit. */
+#include "ref/pipeline/methods/peel.h"
+
 #include "base/memory.h"
 #include "number/blend.h"
 #include "number/op.h"
@@ -26,10 +28,12 @@ struct Peel {
     GBuffer opaque, layer; /* layer.depth is the current peel's */
     Image previous_depth;  /* the other of the two depth buffers */
     Image accum;
-    uint32_t *fragments; /* per pixel: transparent fragments in front of the opaque depth */
-    uint32_t *remaining; /* of those, behind the last peel */
-    PassCounts *tile_counts;
-    int peel; /* −1 during the opaque pass */
+    uint32_t *fragments;     /* per pixel: transparent fragments in front of the opaque depth */
+    uint32_t *remaining;     /* of those, behind the last peel */
+    uint32_t *winner;        /* per pixel with a fragment in the current pass: index in its list */
+    PassCounts counts;       /* of the frame: peels */
+    PassCounts *tile_counts; /* the rest */
+    int peel;                /* −1 during the opaque pass */
     Frame *frame;
     TileFunction function; /* of the pass that runs */
 };
@@ -39,6 +43,7 @@ struct Peel {
 typedef struct TileVisit {
     Peel *state;
     GBuffer *target;
+    const PrimitiveList *list;
     const Primitive *primitive;
 } TileVisit;
 
@@ -72,53 +77,53 @@ static void visit_fragment(void *context, const Setup *setup, int x, int y)
         return;
     *stored = depth.key;
     ((uint32_t *)visit->target->primitive.pixels)[pixel] = visit->primitive->id;
-    Texel texel;
-    fragment_shade(pass, setup, visit->primitive, x, y, &texel);
-    gbuffer_store(visit->target, x, pass->view.height - 1 - y, &texel);
+    state->winner[pixel] = (uint32_t)(visit->primitive - visit->list->items);
 }
 
-static void draw_tile(const Pass *pass, const PrimitiveList *list, const Bins *bins, uint32_t tile,
-                      SetupVisit function, TileVisit *visit)
+/* Runs the fragment shader for the fragments that the depth test left: the others' writes would
+ * have been overwritten, and many layers drawn back to front would shade each many times. */
+static void shade_winners(const TileVisit *visit, uint32_t tile)
 {
+    const Pass *pass = visit->state->pass;
     PixelRect rect = pass_tile_rect(pass, tile);
-    for (size_t i = bins->first[tile]; i < bins->first[tile + 1]; i++) {
-        Setup setup;
-        visit->primitive = &list->items[bins->item[i]];
-        pass_setup(pass, visit->primitive, &setup);
-        setup_visit(&setup, rect, function, visit);
-    }
-}
-
-/* Drawn and repeated pixels of the tile, after its geometry pass. */
-static void count_drawn(Peel *state, uint32_t tile)
-{
-    const Pass *pass = state->pass;
-    PixelRect rect = pass_tile_rect(pass, tile);
-    PassCounts *counts = &state->tile_counts[tile];
+    const uint32_t *ids = visit->target->primitive.pixels;
     for (int y = rect.y0; y <= rect.y1; y++)
         for (int x = rect.x0; x <= rect.x1; x++) {
             size_t pixel = pixel_index(pass, x, y);
-            if (((uint32_t *)state->layer.primitive.pixels)[pixel] == PRIMITIVE_NONE)
+            if (ids[pixel] == PRIMITIVE_NONE)
                 continue;
-            counts->peeled++;
-            if (state->peel > 0 &&
-                key_at(&state->layer.depth, pixel) == key_at(&state->previous_depth, pixel))
-                counts->repeated++;
+            const Primitive *primitive = &visit->list->items[visit->state->winner[pixel]];
+            Setup setup;
+            Texel texel;
+            pass_setup(pass, primitive, &setup);
+            fragment_shade(pass, &setup, primitive, x, y, &texel);
+            gbuffer_store(visit->target, x, pass->view.height - 1 - y, &texel);
         }
+}
+
+static void draw_tile(const Bins *bins, uint32_t tile, SetupVisit function, TileVisit *visit)
+{
+    const Pass *pass = visit->state->pass;
+    PixelRect rect = pass_tile_rect(pass, tile);
+    for (size_t i = bins->first[tile]; i < bins->first[tile + 1]; i++) {
+        Setup setup;
+        visit->primitive = &visit->list->items[bins->item[i]];
+        pass_setup(pass, visit->primitive, &setup);
+        setup_visit(&setup, rect, function, visit);
+    }
 }
 
 static void geometry_tile(Peel *state, uint32_t tile)
 {
     const Pass *pass = state->pass;
     bool opaque = state->peel < 0;
-    TileVisit visit = {.state = state, .target = opaque ? &state->opaque : &state->layer};
-    if (opaque) {
-        draw_tile(pass, &pass->geometry.opaque, &pass->opaque_bins, tile, visit_fragment, &visit);
-        return;
-    }
-    draw_tile(pass, &pass->geometry.transparent, &pass->transparent_bins, tile, visit_fragment,
-              &visit);
-    count_drawn(state, tile);
+    TileVisit visit = {
+        .state = state,
+        .target = opaque ? &state->opaque : &state->layer,
+        .list = opaque ? &pass->geometry.opaque : &pass->geometry.transparent,
+    };
+    draw_tile(opaque ? &pass->opaque_bins : &pass->transparent_bins, tile, visit_fragment, &visit);
+    shade_winners(&visit, tile);
 }
 
 /* ---- lighting pass ---- */
@@ -134,15 +139,15 @@ static void lighting_tile(Peel *state, uint32_t tile)
         for (int x = rect.x0; x <= rect.x1; x++) {
             int row = pass->view.height - 1 - y;
             Texel texel;
-            float colour[4];
+            float color[4];
             gbuffer_load(source, x, row, &texel);
-            if (!shade_pixel(&pass->view, &texel, colour))
+            if (!shade_pixel(&pass->view, &texel, color))
                 continue;
             void *pixel = image_pixel(&state->accum, x, row);
             if (seed)
-                blend_opaque_seed(state->accum.format, colour, pixel);
+                blend_opaque_seed(state->accum.format, color, pixel);
             else
-                blend_under(state->accum.format, colour, pixel);
+                blend_under(state->accum.format, color, pixel);
         }
 }
 
@@ -164,9 +169,8 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
 static void remaining_tile(Peel *state, uint32_t tile)
 {
     const Pass *pass = state->pass;
-    TileVisit visit = {.state = state};
-    draw_tile(pass, &pass->geometry.transparent, &pass->transparent_bins, tile, visit_remaining,
-              &visit);
+    TileVisit visit = {.state = state, .list = &pass->geometry.transparent};
+    draw_tile(&pass->transparent_bins, tile, visit_remaining, &visit);
     PixelRect rect = pass_tile_rect(pass, tile);
     PassCounts *counts = &state->tile_counts[tile];
     for (int y = rect.y0; y <= rect.y1; y++)
@@ -213,7 +217,7 @@ static void clear_accum(Image *accum)
 
 static PassCounts total(const Peel *state)
 {
-    PassCounts sum = {0};
+    PassCounts sum = state->counts;
     for (uint32_t tile = 0; tile < state->pass->tile_count; tile++)
         pass_counts_add(&sum, &state->tile_counts[tile]);
     return sum;
@@ -263,22 +267,34 @@ static Result put_gbuffer(const Peel *state, TraceSink *trace, const GBuffer *bu
     return result;
 }
 
+/* Pixels that the current peel drew, and of those at the previous peel's depth again. */
+static void count_drawn(const Peel *state, uint64_t *drawn, uint64_t *repeated)
+{
+    const Image *primitive = &state->layer.primitive;
+    *drawn = *repeated = 0;
+    for (size_t i = 0; i < (size_t)primitive->width * (size_t)primitive->height; i++) {
+        if (((const uint32_t *)primitive->pixels)[i] == PRIMITIVE_NONE)
+            continue;
+        ++*drawn;
+        *repeated +=
+            state->peel > 0 && key_at(&state->layer.depth, i) == key_at(&state->previous_depth, i);
+    }
+}
+
 /* Geometry pass of peel state->peel. *stop: it yielded nothing (auto with the raw test: nothing
- * new), and there is nothing to blend. */
+ * new), and there is nothing to blend or to count. */
 static Result draw_peel(Peel *state, bool *stop)
 {
     const RenderDesc *desc = state->pass->desc;
-    PassCounts before = total(state);
     gbuffer_clear(&state->layer);
     Result result = run(state, geometry_tile);
-    PassCounts after = total(state);
-    uint64_t drawn = after.peeled - before.peeled, repeated = after.repeated - before.repeated;
+    uint64_t drawn, repeated;
+    count_drawn(state, &drawn, &repeated);
     bool stale = desc->passes == 0 && desc->peel_test == PEEL_TEST_RAW && repeated == drawn;
     *stop = drawn == 0 || stale;
-    if (*stop && state->pass->tile_count > 0) {
-        /* A peel that is not blended is not counted. */
-        state->tile_counts[0].peeled -= drawn;
-        state->tile_counts[0].repeated -= repeated;
+    if (!*stop) {
+        state->counts.peeled += drawn;
+        state->counts.repeated += repeated;
     }
     return result;
 }
@@ -350,26 +366,30 @@ static Result allocate(Peel *state)
         result = image_create(width, height, desc->accum, &state->accum);
     state->fragments = memory_array(pixels, sizeof *state->fragments);
     state->remaining = memory_array(pixels, sizeof *state->remaining);
+    state->winner = memory_array(pixels, sizeof *state->winner);
     state->tile_counts = memory_array(pass->tile_count, sizeof *state->tile_counts);
-    if (result == RESULT_OK && !(state->fragments && state->remaining && state->tile_counts))
+    if (result == RESULT_OK &&
+        !(state->fragments && state->remaining && state->winner && state->tile_counts))
         result = RESULT_NO_MEMORY;
     return result;
 }
 
-uint64_t peel_buffer_bytes(const Pass *pass)
+static uint64_t buffer_bytes(const Pass *pass)
 {
     const GBufferLayout *layout = &pass->layout;
-    uint64_t colour = format_pixel_bytes(layout->normal) + format_pixel_bytes(layout->position) +
-                      format_pixel_bytes(layout->diffuse) + format_pixel_bytes(layout->material);
-    uint64_t pixel = 2 * (colour + 4 + 4) /* two G-buffers with depth and primitive */
-                     + 4 + format_pixel_bytes(pass->desc->accum) + 2 * sizeof(uint32_t);
+    uint64_t color = format_pixel_bytes(layout->normal) + format_pixel_bytes(layout->position) +
+                     format_pixel_bytes(layout->diffuse) + format_pixel_bytes(layout->material);
+    uint64_t pixel = 2 * (color + 4 + 4) /* two G-buffers with depth and primitive */
+                     + 4 + format_pixel_bytes(pass->desc->accum) + 3 * sizeof(uint32_t);
     return pixel * (uint64_t)pass->view.width * (uint64_t)pass->view.height;
 }
 
 Result peel_render(Pass *pass, TraceSink *trace, Frame *frame)
 {
     Peel state = {.pass = pass, .frame = frame};
-    Result result = allocate(&state);
+    Result result = pass_reserve(pass, buffer_bytes(pass));
+    if (result == RESULT_OK)
+        result = allocate(&state);
     if (result == RESULT_OK)
         result = render(&state, trace);
     if (result == RESULT_OK) {
@@ -382,6 +402,7 @@ Result peel_render(Pass *pass, TraceSink *trace, Frame *frame)
     image_free(&state.accum);
     free(state.fragments);
     free(state.remaining);
+    free(state.winner);
     free(state.tile_counts);
     return result;
 }

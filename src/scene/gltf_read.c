@@ -1,0 +1,94 @@
+#include "scene/gltf_read.h"
+
+#include "scene/gltf_check.h"
+#include "scene/gltf_file.h"
+#include "scene/gltf_graph.h"
+
+#include <string.h>
+
+static uint32_t word(const unsigned char *bytes)
+{
+    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+/* Finds the chunks of a .glb of count bytes. Source: glTF 2.0, 4.4. */
+static Result split_binary(const char *path, GltfJson *json, size_t count, const char **text,
+                           size_t *length)
+{
+    const unsigned char *file = json->file;
+    if (count < 20 || memcmp(file, "glTF", 4) != 0)
+        return result_fail(RESULT_BAD_INPUT,
+                           "%s: not a binary glTF file, expected to begin \"glTF\"", path);
+    if (word(file + 4) != 2)
+        return result_fail(RESULT_UNSUPPORTED, "%s: binary glTF version %u, expected 2", path,
+                           word(file + 4));
+    *text = (const char *)file + 20;
+    *length = word(file + 12);
+    if (memcmp(file + 16, "JSON", 4) != 0 || *length > count - 20 || word(file + 8) > count)
+        return result_fail(RESULT_BAD_INPUT, "%s: truncated: %zu bytes, expected %u", path, count,
+                           word(file + 8));
+    size_t next = 20 + (*length + 3) / 4 * 4;
+    if (count < next + 8)
+        return RESULT_OK;
+    if (memcmp(file + next + 4, "BIN", 4) != 0 || word(file + next) > count - next - 8)
+        return result_fail(RESULT_BAD_INPUT, "%s: binary chunk is truncated or of unknown type",
+                           path);
+    json->binary = json->file + next + 8;
+    json->binary_count = word(file + next);
+    return RESULT_OK;
+}
+
+static Result check_version(const char *path, const json_t *root)
+{
+    const char *version =
+        json_string_value(json_object_get(json_object_get(root, "asset"), "version"));
+    if (!version)
+        return result_fail(RESULT_BAD_INPUT, "%s: not a glTF file, expected asset.version", path);
+    if (strncmp(version, "2.", 2) != 0)
+        return result_fail(RESULT_UNSUPPORTED, "%s: glTF version %s, expected 2.0", path, version);
+    return RESULT_OK;
+}
+
+static Result parse(const char *path, GltfJson *json)
+{
+    size_t count = 0, length = 0;
+    const char *text = NULL;
+    Result result = gltf_file_read(path, &json->file, &count);
+    if (result)
+        return result;
+    if (gltf_file_kind(path) == 1) {
+        result = split_binary(path, json, count, &text, &length);
+    } else {
+        text = (const char *)json->file;
+        length = count;
+        if (count >= 4 && memcmp(text, "glTF", 4) == 0)
+            result =
+                result_fail(RESULT_BAD_INPUT, "%s: binary glTF, expected the extension .glb", path);
+    }
+    if (result)
+        return result;
+    json_error_t error;
+    json->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
+    if (!json->root)
+        return result_fail(RESULT_BAD_INPUT, "%s: not glTF: line %d, column %d: %s", path,
+                           error.line, error.column, error.text);
+    return check_version(path, json->root);
+}
+
+Result gltf_read(const char *path, GltfJson *out)
+{
+    GltfJson json = {0};
+    *out = json;
+    if (gltf_file_kind(path) < 0)
+        return result_fail(RESULT_BAD_INPUT, "%s: unknown extension, expected .gltf or .glb", path);
+    Result result = parse(path, &json);
+    if (!result)
+        result = gltf_check(path, &json);
+    if (!result)
+        result = gltf_graph_check(path, &json);
+    if (result)
+        gltf_json_free(&json);
+    else
+        *out = json;
+    return result;
+}
