@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,6 +13,39 @@
 static Result fail_write(const char *path, int error)
 {
     return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
+}
+
+/* The temporaries of open writers. More than there are slots are merely not cleaned up. */
+enum {
+    TEMPORARIES = 64
+};
+static _Atomic(const char *) temporaries[TEMPORARIES];
+
+static void remember(const char *name)
+{
+    for (int i = 0; i < TEMPORARIES; i++) {
+        const char *none = NULL;
+        if (atomic_compare_exchange_strong(&temporaries[i], &none, name))
+            return;
+    }
+}
+
+static void forget(const char *name)
+{
+    for (int i = 0; name && i < TEMPORARIES; i++) {
+        const char *same = name;
+        if (atomic_compare_exchange_strong(&temporaries[i], &same, NULL))
+            return;
+    }
+}
+
+void file_remove_temporaries(void)
+{
+    for (int i = 0; i < TEMPORARIES; i++) {
+        const char *name = atomic_load(&temporaries[i]);
+        if (name)
+            unlink(name);
+    }
 }
 
 /* How much of path names its folder, the slash included. */
@@ -38,6 +72,7 @@ static int create_temporary(const char *path, char **temporary)
     }
     if (descriptor >= 0) {
         *temporary = name;
+        remember(name);
         return descriptor;
     }
     int error = errno;
@@ -108,6 +143,7 @@ static int open_target(FileWriter *writer)
 static void release(FileWriter *writer)
 {
     free(writer->path);
+    forget(writer->temporary);
     free(writer->temporary);
     *writer = (FileWriter){0};
 }

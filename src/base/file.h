@@ -36,6 +36,10 @@ Result file_writer_close(FileWriter *writer, bool commit);
 /* size bytes as one file. */
 Result file_write(const char *path, const void *data, size_t size);
 
+/* Unlinks the temporary files of all open writers. For a handler of a signal that ends the
+ * program: async-signal-safe. */
+void file_remove_temporaries(void);
+
 /* Makes a directory and its parents where they are missing. */
 Result file_make_directories(const char *path);
 

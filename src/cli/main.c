@@ -1,8 +1,10 @@
 /* peel: the command line. One file per command; see bind.h. */
+#include "base/file.h"
 #include "cli/bind.h"
 #include "cli/options.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +41,29 @@ static void open_standard_streams(void)
             abort();
 }
 
+/* Leaves neither a temporary file nor a progress line behind. */
+static void on_signal(int number)
+{
+    static const char clear_line[] = "\r\033[K";
+    file_remove_temporaries();
+    if (isatty(STDERR_FILENO) && write(STDERR_FILENO, clear_line, sizeof clear_line - 1) < 0) {
+        /* nothing more to do */
+    }
+    raise(number); /* SA_RESETHAND: ends the program as the signal does */
+}
+
+static void handle_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESETHAND | SA_NODEFER};
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        struct sigaction now;
+        if (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler == SIG_DFL)
+            sigaction(numbers[i], &action, NULL);
+    }
+}
+
 static int run(int argc, char **argv)
 {
     if (argc < 2) {
@@ -68,6 +93,7 @@ static int run(int argc, char **argv)
 int main(int argc, char **argv)
 {
     open_standard_streams();
+    handle_signals();
     int code = run(argc, argv);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "peel: standard output: write failed\n");

@@ -204,6 +204,10 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
              unaffected->p99_rel <= report->tolerance ? "agree" : "differ",
              summary_real(unaffected->p99_rel, p99), report->tolerance,
              summary_count(unaffected->pixels, same), summary_count(pair->final.pixels, all));
+    size_t length = strlen(out);
+    if (report->seed_profile && unaffected->p99_rel > report->tolerance)
+        snprintf(out + length, SUMMARY_LINE - length,
+                 " The seed profile stores in 8 and 16 bits, coarser than this tolerance allows.");
 }
 
 void summary_residual(const Threeway *report, char out[SUMMARY_LINE])
