@@ -38,7 +38,9 @@ RenderOptions options_default(void);
 
 /* Parses a command's line. Returns 0, OPTIONS_HELPED after --help, or EXIT_BAD_INPUT after a
  * one-line message. */
-enum { OPTIONS_HELPED = -1 };
+enum {
+    OPTIONS_HELPED = -1
+};
 int options_parse(const struct argp *argp, int argc, char **argv, void *input);
 
 /* For parsers: one line on stderr, and the error code that options_parse turns into exit 4. */

@@ -174,7 +174,10 @@ END_TEST
 /* Neither many background pixels hide a few wrong fragments, nor the other way round. */
 START_TEST(test_background)
 {
-    enum { PIXELS = 1000, FEW = 5 };
+    enum {
+        PIXELS = 1000,
+        FEW = 5
+    };
     for (int wrong_background = 0; wrong_background < 2; wrong_background++) {
         static float a[PIXELS][4], b[PIXELS][4];
         uint8_t same[PIXELS];
