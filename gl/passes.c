@@ -25,11 +25,14 @@ static Result build_geometry(const RenderDesc *desc, GeometryPass pass, GLuint *
     static const char *const names[] = {"opaque geometry", "first peel", "next peel"};
     static const char *const stages[] = {"", "#define TRANSPARENT\n",
                                          "#define TRANSPARENT\n#define NEXT_PEEL\n"};
+    PixelFormat depth = render_desc_depth(desc);
     char defines[256];
     snprintf(defines, sizeof defines, "%s%s%s%s", stages[pass],
              desc->normals == NORMALS_FACED ? "#define FACED\n" : "",
              desc->peel_test == PEEL_TEST_RAW ? "#define TEST_RAW\n" : "",
-             render_desc_depth(desc) == FORMAT_D24 ? "#define DEPTH_24\n" : "");
+             depth == FORMAT_D24   ? "#define DEPTH_24\n"
+             : depth == FORMAT_D16 ? "#define DEPTH_16\n"
+                                   : "");
     return program_build(names[pass], defines, shader_geometry_vert, shader_geometry_frag, out);
 }
 
@@ -43,8 +46,9 @@ static Result build_programs(Passes *passes)
         return result;
 
     char defines[96];
-    snprintf(defines, sizeof defines, "#define LIGHT_COUNT %zu\n%s", passes->view->light_count,
-             passes->lights.storage ? "#define LIGHTS_STORAGE\n" : "");
+    snprintf(defines, sizeof defines, "#define LIGHT_COUNT %zu\n%s%s", passes->view->light_count,
+             passes->lights.storage ? "#define LIGHTS_STORAGE\n" : "",
+             desc->accum == FORMAT_RGBA8 ? "#define ACCUM_8\n" : "");
     result = program_build("lighting", defines, shader_fullscreen_vert, shader_lighting_frag,
                            &passes->lighting);
     if (result == RESULT_OK)

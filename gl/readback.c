@@ -13,6 +13,7 @@ static const Transfer transfers[FORMAT_COUNT] = {
     [FORMAT_RGBA8] = {GL_RGBA, GL_UNSIGNED_BYTE},
     [FORMAT_D32F] = {GL_DEPTH_COMPONENT, GL_FLOAT},
     [FORMAT_D24] = {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
+    [FORMAT_D16] = {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
     [FORMAT_R32UI] = {GL_RED_INTEGER, GL_UNSIGNED_INT},
 };
 
@@ -55,13 +56,14 @@ void readback_depth(const Targets *targets, GLuint framebuffer, ReadbackRows row
 {
     gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     read_pixels(targets, targets->depth_format, rows, pixels);
-    if (targets->depth_format != FORMAT_D24)
+    if (targets->depth_format == FORMAT_D32F)
         return;
-    /* The driver widens 24 bits to 32 by repeating the leading ones. */
+    /* The driver widens 24 or 16 bits to 32 by repeating the leading ones. */
+    int shift = targets->depth_format == FORMAT_D24 ? 8 : 16;
     uint32_t *codes = pixels;
     size_t count = (size_t)targets->width * (size_t)targets->height;
     for (size_t i = 0; i < count; i++)
-        codes[i] >>= 8;
+        codes[i] >>= shift;
 }
 
 static Result put(const Targets *targets, int peel, const char *what, PixelFormat format,

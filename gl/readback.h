@@ -15,7 +15,7 @@ typedef enum ReadbackRows {
 void readback_color(const Targets *targets, GLuint framebuffer, int attachment, PixelFormat format,
                     ReadbackRows rows, void *pixels);
 
-/* Depth of framebuffer: floats, or for FORMAT_D24 the 24-bit integers in uint32_t. */
+/* Depth of framebuffer: floats, or the integers of FORMAT_D24 and FORMAT_D16 in uint32_t. */
 void readback_depth(const Targets *targets, GLuint framebuffer, ReadbackRows rows, void *pixels);
 
 /* Depth and G-buffer of framebuffer to the trace: under "opaque." for peel −1, else under

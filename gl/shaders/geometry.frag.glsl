@@ -5,6 +5,7 @@
 // NEXT_PEEL      compare with the previous peel's depth as well
 // TEST_RAW       compare gl_FragCoord.z itself instead of its stored value
 // DEPTH_24       depth is stored in 24 bits
+// DEPTH_16       in 16 bits
 
 layout(location = 0) in vec3 v_position;
 layout(location = 1) in vec3 v_normal;
@@ -42,6 +43,11 @@ bool is_peeled_or_hidden()
     if (uint(code) >= texelFetch(opaque_depth, pixel, 0).r)
         return true;
     z = code * (1.0 / 16777215.0); // what a fetch of the stored depth gives
+#endif
+#ifdef DEPTH_16
+    precise float scaled = z * (65535.0 / 65536.0);
+    precise float shifted = scaled + 128.0; // the low bits of the mantissa are the code
+    z = float(floatBitsToUint(shifted) & 0xffffu) * (1.0 / 65535.0);
 #endif
 #endif
 #if defined(TEST_RAW) || !defined(DEPTH_24)

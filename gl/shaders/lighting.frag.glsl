@@ -3,6 +3,7 @@
 //
 // LIGHT_COUNT      number of lights
 // LIGHTS_STORAGE   they do not fit a uniform block
+// ACCUM_8          the accumulation buffer has 8 bits a channel
 
 layout(binding = 0) uniform sampler2D normal_buffer;
 layout(binding = 1) uniform sampler2D position_buffer;
@@ -86,4 +87,8 @@ void main()
     precise vec3 color = sum + ambient * diffuse * material.z;
     precise vec3 premultiplied = color * diffuse_alpha.a;
     source = vec4(premultiplied, diffuse_alpha.a);
+#ifdef ACCUM_8
+    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
+    source = clamp(source, 0.0, 1.0);
+#endif
 }

@@ -32,11 +32,13 @@ void gbuffer_load(const GBuffer *buffers, int x, int y, Texel *out);
 void texel_quantise(const GBufferLayout *layout, Texel *texel);
 
 /* A stored depth as an integer whose order is the depth's: the bits of a D32F (never negative,
- * so they sort as integers), the D24 itself. */
+ * so they sort as integers), the D24 or D16 itself. */
 static inline uint32_t depth_key(PixelFormat format, float z)
 {
     if (format == FORMAT_D24)
         return depth24_from_float(z);
+    if (format == FORMAT_D16)
+        return depth16_from_float(z);
     float stored = depth32f_from_float(z);
     uint32_t key;
     memcpy(&key, &stored, sizeof key);
@@ -45,7 +47,7 @@ static inline uint32_t depth_key(PixelFormat format, float z)
 
 static inline uint32_t depth_key_far(PixelFormat format)
 {
-    return format == FORMAT_D24 ? 0xffffffu : 0x3f800000u;
+    return format == FORMAT_D24 ? 0xffffffu : format == FORMAT_D16 ? 0xffffu : 0x3f800000u;
 }
 
 /* What a texel fetch makes of it. */
@@ -53,6 +55,8 @@ static inline float depth_fetch(PixelFormat format, uint32_t key)
 {
     if (format == FORMAT_D24)
         return depth24_to_float(key);
+    if (format == FORMAT_D16)
+        return depth16_to_float(key);
     float stored;
     memcpy(&stored, &key, sizeof stored);
     return stored;

@@ -169,6 +169,10 @@ enum {
     KEY_CULL,
     KEY_NORMALS,
     KEY_DEPTH_FUNC,
+    KEY_PEEL_TEST,
+    KEY_DEPTH,
+    KEY_ACCUM,
+    KEY_GBUFFER,
     KEY_FMA,
     KEY_SIMD,
     KEY_THREADS,
@@ -195,6 +199,13 @@ static const struct argp_option render_options[] = {
      "On back faces: faced (default: turned to the viewer) or kept", 1},
     {"depth-func", KEY_DEPTH_FUNC, "FUNC", 0,
      "less (default: of equal depths the first drawn stays) or lequal (the last)", 1},
+    {"peel-test", KEY_PEEL_TEST, "TEST", 0,
+     "stored (default: depths are compared as stored) or raw (gl_FragCoord.z with a stored depth)",
+     1},
+    {"depth", KEY_DEPTH, "FORMAT", 0, "d32f (default), d24 or d16", 1},
+    {"accum", KEY_ACCUM, "FORMAT", 0, "rgba32f (default), rgba16f, rgba16 or rgba8", 1},
+    {"gbuffer", KEY_GBUFFER, "SET", 0,
+     "full (default: all 32-bit floats) or seed (the original's formats)", 1},
     {"fma", KEY_FMA, "on|off", 0,
      "Fused multiply-add in fixed-function arithmetic (default: as the GL driver does; without gl, "
      "on)",
@@ -270,6 +281,13 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     static const char *const culls[] = {"gltf", "seed", "none"};
     static const char *const normals[] = {"faced", "kept"};
     static const char *const functions[] = {"less", "lequal"};
+    static const char *const tests[] = {"stored", "raw"};
+    static const char *const gbuffers[] = {"full", "seed"};
+    static const PixelFormat depth_formats[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
+    static const char *const depths[] = {"d32f", "d24", "d16"};
+    static const PixelFormat accum_formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
+                                                FORMAT_RGBA8};
+    static const char *const accums[] = {"rgba32f", "rgba16f", "rgba16", "rgba8"};
     const char *simds[SIMD_COUNT];
     for (int i = 0; i < SIMD_COUNT; i++)
         simds[i] = simd_name((SimdChoice)i);
@@ -295,6 +313,22 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     case KEY_DEPTH_FUNC:
         error = parse_choice("--depth-func", argument, functions, 2, &choice);
         options->depth_func = choice;
+        break;
+    case KEY_PEEL_TEST:
+        error = parse_choice("--peel-test", argument, tests, 2, &choice);
+        options->peel_test = choice;
+        break;
+    case KEY_GBUFFER:
+        error = parse_choice("--gbuffer", argument, gbuffers, 2, &choice);
+        options->gbuffer = choice;
+        break;
+    case KEY_DEPTH:
+        error = parse_choice("--depth", argument, depths, 3, &choice);
+        options->depth = (int)depth_formats[choice];
+        break;
+    case KEY_ACCUM:
+        error = parse_choice("--accum", argument, accums, 4, &choice);
+        options->accum = (int)accum_formats[choice];
         break;
     case KEY_SIMD:
         error = parse_choice("--simd", argument, simds, SIMD_COUNT, &choice);
@@ -355,7 +389,15 @@ const struct argp options_render_argp = {render_options, parse_render, NULL, NUL
 RenderOptions options_default(void)
 {
     return (RenderOptions){
-        .desc = {.width = 1280, .height = 720}, .cull = -1, .normals = -1, .depth_func = -1};
+        .desc = {.width = 1280, .height = 720},
+        .cull = -1,
+        .normals = -1,
+        .depth_func = -1,
+        .peel_test = -1,
+        .gbuffer = -1,
+        .depth = -1,
+        .accum = -1,
+    };
 }
 
 /* ---- the scene ---- */
@@ -413,6 +455,14 @@ Result options_load_scene(RenderOptions *options, Scene *out)
         options->desc.normals = (NormalMode)options->normals;
     if (options->depth_func >= 0)
         options->desc.depth_func = (DepthFunc)options->depth_func;
+    if (options->peel_test >= 0)
+        options->desc.peel_test = (PeelTest)options->peel_test;
+    if (options->gbuffer >= 0)
+        options->desc.gbuffer = (GBufferFormat)options->gbuffer;
+    if (options->depth >= 0)
+        options->desc.depth = (PixelFormat)options->depth;
+    if (options->accum >= 0)
+        options->desc.accum = (PixelFormat)options->accum;
     options->desc.unfused = options->fma == FMA_OFF;
     /* Mesa reads it at its first call, once per process: hides FMA (and AVX) from its compiler. */
     if (options->fma == FMA_OFF)

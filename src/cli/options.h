@@ -27,7 +27,8 @@ typedef struct RenderOptions {
     bool has_opacity, has_background, seed_profile;
     double opacity, background[3];
     FmaChoice fma;
-    int cull, normals, depth_func; /* −1: as the profile has it, else an enum of RenderDesc */
+    /* −1: as the profile has it; else the value in RenderDesc. */
+    int cull, normals, depth_func, peel_test, gbuffer, depth, accum;
 } RenderOptions;
 
 /* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */

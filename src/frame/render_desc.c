@@ -12,6 +12,16 @@ void render_desc_seed_profile(RenderDesc *desc)
     desc->opaque_blend = OPAQUE_BLEND_SEED;
 }
 
+bool render_desc_is_seed(const RenderDesc *desc)
+{
+    RenderDesc seed = *desc;
+    render_desc_seed_profile(&seed);
+    return seed.gbuffer == desc->gbuffer && seed.depth == desc->depth &&
+           seed.accum == desc->accum && seed.depth_func == desc->depth_func &&
+           seed.peel_test == desc->peel_test && seed.cull == desc->cull &&
+           seed.normals == desc->normals && seed.opaque_blend == desc->opaque_blend;
+}
+
 const char *simd_name(SimdChoice simd)
 {
     static const char *const names[SIMD_COUNT] = {"auto", "scalar", "sse2", "avx2", "avx512"};

@@ -75,8 +75,8 @@ typedef struct RenderDesc {
     int lights;        /* first N of the scene's; 0 all, negative none */
     MethodId method;
     int passes;        /* at most N peels; 0 until a peel yields no fragment */
-    PixelFormat depth; /* FORMAT_D32F or FORMAT_D24; FORMAT_RGBA32F (zero) means the default D32F */
-    PixelFormat accum; /* FORMAT_RGBA32F or FORMAT_RGBA16 */
+    PixelFormat depth; /* FORMAT_D32F, D24 or D16; FORMAT_RGBA32F (zero) means the default D32F */
+    PixelFormat accum; /* FORMAT_RGBA32F, RGBA16F, RGBA16 or RGBA8 */
     GBufferFormat gbuffer;
     DepthFunc depth_func;
     PeelTest peel_test;
@@ -93,7 +93,7 @@ typedef struct RenderDesc {
 /* The depth format with the default filled in. */
 static inline PixelFormat render_desc_depth(const RenderDesc *desc)
 {
-    return desc->depth == FORMAT_D24 ? FORMAT_D24 : FORMAT_D32F;
+    return desc->depth == FORMAT_RGBA32F ? FORMAT_D32F : desc->depth;
 }
 
 /* Stored formats of the G-buffer's colour buffers. */
@@ -106,5 +106,6 @@ GBufferLayout gbuffer_layout(GBufferFormat format);
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,
  * raw peel test, its culling, normals and opaque blend. */
 void render_desc_seed_profile(RenderDesc *desc);
+bool render_desc_is_seed(const RenderDesc *desc); /* whether all of these are set */
 
 #endif

@@ -85,12 +85,13 @@ static Result check(const Scene *scene, const RenderDesc *desc)
     if (desc->camera < 0 || (size_t)desc->camera >= scene->camera_count)
         return result_fail(RESULT_BAD_INPUT, "camera %d: the scene has %zu", desc->camera,
                            scene->camera_count);
-    if (desc->accum != FORMAT_RGBA32F && desc->accum != FORMAT_RGBA16)
-        return result_fail(RESULT_BAD_INPUT, "accumulation in %s: expected rgba32f or rgba16",
-                           format_info(desc->accum)->name);
-    if (desc->depth != 0 && desc->depth != FORMAT_D32F && desc->depth != FORMAT_D24)
-        return result_fail(RESULT_BAD_INPUT, "depth in %s: expected d32f or d24",
-                           format_info(desc->depth)->name);
+    if (desc->accum >= FORMAT_COUNT || format_info(desc->accum)->channels != 4)
+        return result_fail(RESULT_BAD_INPUT, "accumulation in format %d: expected four channels",
+                           (int)desc->accum);
+    PixelFormat depth = render_desc_depth(desc);
+    if (depth != FORMAT_D32F && depth != FORMAT_D24 && depth != FORMAT_D16)
+        return result_fail(RESULT_BAD_INPUT, "depth in format %d: expected d32f, d24 or d16",
+                           (int)depth);
     if (!isfinite(desc->time) || fabs(desc->time) > 1e6)
         return result_fail(RESULT_BAD_INPUT, "time %g: expected at most 1e6 seconds", desc->time);
     if (scene_triangle_count(scene) >= UINT32_MAX)

@@ -11,6 +11,7 @@ static const FormatInfo infos[FORMAT_COUNT] = {
     [FORMAT_RGBA8] = {"rgba8", KIND_UNORM, 4, 1, 255},
     [FORMAT_D32F] = {"d32f", KIND_FLOAT, 1, 4, 0},
     [FORMAT_D24] = {"d24", KIND_UNORM, 1, 4, 16777215},
+    [FORMAT_D16] = {"d16", KIND_UNORM, 1, 4, 65535},
     [FORMAT_R32UI] = {"r32ui", KIND_UINT, 1, 4, 0},
 };
 
@@ -80,6 +81,7 @@ void format_store(PixelFormat format, const float value[4], void *pixel)
         return;
     case FORMAT_D32F:
     case FORMAT_D24:
+    case FORMAT_D16:
     case FORMAT_R32UI:
     case FORMAT_COUNT:
         break;
@@ -109,6 +111,7 @@ void format_fetch(PixelFormat format, const void *pixel, float value[4])
         return;
     case FORMAT_D32F:
     case FORMAT_D24:
+    case FORMAT_D16:
     case FORMAT_R32UI:
     case FORMAT_COUNT:
         break;
@@ -183,6 +186,17 @@ uint32_t depth24_from_float(float z)
 float depth24_to_float(uint32_t depth)
 {
     return op_mul((float)depth, (float)(1.0 / 16777215.0));
+}
+
+uint32_t depth16_from_float(float z)
+{
+    /* 128 has a unit of 2^-16 in its mantissa. */
+    return op_bits(op_add(op_mul(depth32f_from_float(z), 65535.0f / 65536.0f), 128.0f)) & 0xffffu;
+}
+
+float depth16_to_float(uint32_t depth)
+{
+    return op_mul((float)depth, (float)(1.0 / 65535.0));
 }
 
 /* Maps the bits of a sign-magnitude number to integers in the order of the numbers; −0 and +0

@@ -15,6 +15,7 @@ typedef enum PixelFormat {
     FORMAT_RGBA8,  /* unorm */
     FORMAT_D32F,   /* window depth as a float */
     FORMAT_D24,    /* window depth as a 24-bit unorm in a uint32_t */
+    FORMAT_D16,    /* as a 16-bit unorm, in a uint32_t too */
     FORMAT_R32UI,  /* an index; UINT32_MAX is none */
     FORMAT_COUNT
 } PixelFormat;
@@ -66,6 +67,10 @@ float half_to_float(uint16_t half); /* exact */
 float depth32f_from_float(float z);
 uint32_t depth24_from_float(float z);
 float depth24_to_float(uint32_t depth); /* a texel fetch: (float)u · (float)(1/(2^24 − 1)) */
+
+/* 16 bits: the low mantissa bits of z·65535/65536 + 128, which rounds to nearest even. */
+uint32_t depth16_from_float(float z);
+float depth16_to_float(uint32_t depth); /* a texel fetch: (float)u · (float)(1/65535) */
 
 /* The number of representable values between two stored values: 0 iff the bits are equal or both
  * are NaN; +0 and −0 are 1 apart; UINT32_MAX between a NaN and a number. */

@@ -62,6 +62,19 @@ static inline void op_leave(uint32_t saved)
 #endif
 }
 
+/* Leaves flushing mode for what the driver computes with denormals; op_leave(op_suspend()) comes
+ * back. The arithmetic between is plain C, in a function that is not inlined. */
+static inline uint32_t op_suspend(void)
+{
+#if OP_HARDWARE_FLUSH
+    uint32_t saved = _mm_getcsr();
+    _mm_setcsr(0x1f80);
+    return saved;
+#else
+    return 0;
+#endif
+}
+
 /* x with a denormal replaced by the zero of its sign. Moves bits only, in any mode. */
 static inline float op_flush(float x)
 {

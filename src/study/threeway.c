@@ -292,7 +292,7 @@ Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc
                       .scene_path = path,
                       .desc = *desc,
                       .light_count = scene->light_count,
-                      .seed_profile = desc->gbuffer == GBUFFER_SEED,
+                      .seed_profile = render_desc_is_seed(desc),
                       .tolerance = tolerance};
     Run run = {.scene = scene, .desc = *desc, .renderers = renderers, .report = out};
     Result result = run_all(&run, keep_pictures);

@@ -79,6 +79,8 @@ b'
     refuse 'misspelt scene' 'built-in scene' render tutoral $out
     refuse 'unknown method' '--method' render tutorial $out --method magic
     refuse 'unknown renderer' '--with' render tutorial $out --with vulkan
+    refuse 'depth format' 'd32f, d24 or d16' render tutorial $out --depth d32
+    refuse 'accumulation format' 'rgba8' render tutorial $out --accum rgb
     refuse 'passes 0' '--passes' render tutorial $out --passes 0
     refuse 'passes -1' '--passes' render tutorial $out --passes -1
     refuse 'lights x' '--lights' render tutorial $out --lights x

@@ -76,6 +76,15 @@ exits 0 'the seed profile with room' "$peel" compare chain.gltf --size 64x36 --p
     --tolerance 1
 exits 0 'unfused' "$peel" compare chain.gltf --size 64x36 --fma off
 has 'unfused' output 'separate'
+for choice in '--depth d24' '--depth d16' '--accum rgba16f' '--accum rgba16' '--accum rgba8' \
+    '--gbuffer seed' '--peel-test raw' '--depth-func lequal' \
+    '--cull none' '--cull seed' '--normals kept' '--profile seed --accum rgba8' \
+    '--fma off --depth d16 --accum rgba16f'; do
+    # shellcheck disable=SC2086 # words
+    exits 0 "compare $choice" "$peel" compare tutorial --size 64x36 --tolerance 1 $choice
+done
+exits 2 'the raw test with 16 bits repeats layers and loses others' \
+    "$peel" compare tutorial --size 64x36 --tolerance 1 --peel-test raw --depth d16
 exits 0 'report and JSON' "$peel" compare chain.gltf --size 64x36 --passes 1 --json j.json \
     --report report/of/this
 has 'the pass limit' output 'passes ended first'

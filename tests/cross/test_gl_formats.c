@@ -127,13 +127,14 @@ static void check_depth(PixelFormat format, GLenum internal, int round)
 {
     static uint32_t codes[TEXELS];
     static float fetched[TEXELS];
-    fill_codes(round, format == FORMAT_D24 ? 16777215.0 : 1024.0);
+    uint32_t most = format_info(format)->unorm_max;
+    fill_codes(round, most ? most : 1024.0);
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_ALWAYS);
     GLuint depth = driver_target(internal, true);
     driver_draw(driver_build("", "gl_FragDepth = a.x;"));
     gl.Disable(GL_DEPTH_TEST);
-    GLenum type = format == FORMAT_D24 ? GL_UNSIGNED_INT : GL_FLOAT;
+    GLenum type = most ? GL_UNSIGNED_INT : GL_FLOAT;
     gl.ReadPixels(0, 0, WIDTH, HEIGHT, GL_DEPTH_COMPONENT, type, codes);
     gl.BindTextureUnit(0, depth);
     driver_target(GL_R32F, false);
@@ -142,12 +143,17 @@ static void check_depth(PixelFormat format, GLenum internal, int round)
     gl.BindTextureUnit(0, operands[0]);
     for (int i = 0; i < TEXELS; i++) {
         uint32_t mode = op_enter();
-        uint32_t code = format == FORMAT_D24 ? depth24_from_float(a[i][0])
-                                             : op_bits(depth32f_from_float(a[i][0]));
-        float fetch = format == FORMAT_D24 ? depth24_to_float(code) : op_from_bits(code);
+        uint32_t code = format == FORMAT_D24   ? depth24_from_float(a[i][0])
+                        : format == FORMAT_D16 ? depth16_from_float(a[i][0])
+                                               : op_bits(depth32f_from_float(a[i][0]));
+        float fetch = format == FORMAT_D24   ? depth24_to_float(code)
+                      : format == FORMAT_D16 ? depth16_to_float(code)
+                                             : op_from_bits(code);
         op_leave(mode);
-        /* 24 bits are read back as 32, the leading ones repeated. */
-        uint32_t widened = format == FORMAT_D24 ? code << 8 | code >> 16 : code;
+        /* 24 and 16 bits are read back as 32, the leading ones repeated. */
+        uint32_t widened = format == FORMAT_D24   ? code << 8 | code >> 16
+                           : format == FORMAT_D16 ? code << 16 | code
+                                                  : code;
         if (codes[i] != widened)
             ck_abort_msg("%s of %a: driver 0x%08x, number/format.h 0x%08x",
                          format_info(format)->name, (double)a[i][0], codes[i], widened);
@@ -174,6 +180,7 @@ START_TEST(test_depth)
 {
     for (int round = 0; round <= INPUT_SETS; round++) {
         check_depth(FORMAT_D24, GL_DEPTH_COMPONENT24, round);
+        check_depth(FORMAT_D16, GL_DEPTH_COMPONENT16, round);
         check_depth(FORMAT_D32F, GL_DEPTH_COMPONENT32F, round);
     }
 }
@@ -228,6 +235,9 @@ START_TEST(test_blend)
         for (int seed = 0; seed < 2; seed++) {
             check_blend(FORMAT_RGBA32F, GL_RGBA32F, GL_FLOAT, seed != 0, (InputSet)set);
             check_blend(FORMAT_RGBA16, GL_RGBA16, GL_UNSIGNED_SHORT, seed != 0, (InputSet)set);
+            check_blend(FORMAT_RGBA16F, GL_RGBA16F, GL_HALF_FLOAT, seed != 0, (InputSet)set);
+            if (fused || set <= INPUT_SIGNED) /* see check_store */
+                check_blend(FORMAT_RGBA8, GL_RGBA8, GL_UNSIGNED_BYTE, seed != 0, (InputSet)set);
         }
 }
 END_TEST

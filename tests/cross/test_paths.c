@@ -30,8 +30,11 @@ static RenderDesc random_desc(Random *random)
     if (profile == 1)
         render_desc_seed_profile(&desc);
     if (profile >= 2) { /* neither */
-        desc.depth = random_bits(random) & 1 ? FORMAT_D24 : FORMAT_D32F;
-        desc.accum = random_bits(random) & 1 ? FORMAT_RGBA16 : FORMAT_RGBA32F;
+        static const PixelFormat depths[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
+        static const PixelFormat accums[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
+                                             FORMAT_RGBA8};
+        desc.depth = depths[random_bits(random) % 3];
+        desc.accum = accums[random_bits(random) % 4];
         desc.gbuffer = (GBufferFormat)(random_bits(random) % 2);
         desc.depth_func = (DepthFunc)(random_bits(random) % 2);
         desc.peel_test = (PeelTest)(random_bits(random) % 2);
@@ -299,7 +302,10 @@ static uint64_t check_layer(const Traced *layer, const Traced *before, const Tra
                             const RenderDesc *desc)
 {
     uint64_t drawn = 0;
-    uint32_t far = render_desc_depth(desc) == FORMAT_D24 ? 0xffffffu : 0x3f800000u;
+    PixelFormat depth_format = render_desc_depth(desc);
+    uint32_t far = depth_format == FORMAT_D24   ? 0xffffffu
+                   : depth_format == FORMAT_D16 ? 0xffffu
+                                                : 0x3f800000u;
     for (size_t i = 0; i < (size_t)desc->width * (size_t)desc->height; i++) {
         uint32_t depth = word_at(layer->depth, i);
         if (word_at(layer->primitive, i) == UINT32_MAX) {

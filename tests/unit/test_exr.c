@@ -18,9 +18,9 @@ static Image noise(int width, int height, PixelFormat format, uint64_t seed)
     Random random = random_seed(seed);
     for (size_t i = 0; i < bytes; i++)
         ((uint8_t *)image.pixels)[i] = (uint8_t)random_bits(&random);
-    if (format == FORMAT_D24)
+    if (format == FORMAT_D24 || format == FORMAT_D16)
         for (size_t i = 0; i < bytes / 4; i++)
-            ((uint32_t *)image.pixels)[i] &= 0xffffffu;
+            ((uint32_t *)image.pixels)[i] &= format_info(format)->unorm_max;
     static const uint32_t floats[] = {0x80000000u, 1u,          0x807fffffu, 0x7f800000u,
                                       0xff800000u, 0x7fc00001u, 0x7f800001u, 0xffffffffu};
     static const uint16_t halves[] = {0x8000, 1, 0x83ff, 0x7c00, 0xfc00, 0x7e01, 0x7c01, 0xffff};

@@ -64,6 +64,21 @@ START_TEST(test_unorm_fetch_is_no_division)
 }
 END_TEST
 
+/* Every 16-bit depth fetches to a number of its own and comes back from it. */
+START_TEST(test_depth16_codes)
+{
+    for (uint32_t i = 0; i < 1u << 16; i++) {
+        if (depth16_from_float(depth16_to_float(i)) != i)
+            ck_abort_msg("depth16: %u does not come back from its fetch", i);
+        if (i && !(depth16_to_float(i) > depth16_to_float(i - 1)))
+            ck_abort_msg("depth16: %u fetches no further than its predecessor", i);
+    }
+    ck_assert_uint_eq(depth16_from_float(1.5f), 0xffffu);
+    ck_assert_uint_eq(depth16_from_float(-1.0f), 0);
+    ck_assert_uint_eq(depth16_from_float(NAN), 0xffffu);
+}
+END_TEST
+
 START_TEST(test_depth24_codes)
 {
     uint32_t changed = 0;
@@ -238,6 +253,7 @@ int main(void)
     tcase_set_timeout(tcase, 300);
     tcase_add_test(tcase, test_unorm_round_trip);
     tcase_add_test(tcase, test_unorm_fetch_is_no_division);
+    tcase_add_test(tcase, test_depth16_codes);
     tcase_add_test(tcase, test_depth24_codes);
     tcase_add_test(tcase, test_unorm_rounding);
     tcase_add_test(tcase, test_half_round_trip);

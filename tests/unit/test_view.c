@@ -201,8 +201,9 @@ START_TEST(test_limits)
         {.width = 64, .height = 64, .time = INFINITY},
         {.width = 64, .height = 64, .time = NAN},
         {.width = 64, .height = 64, .time = 1e7},
-        {.width = 64, .height = 64, .accum = FORMAT_RGBA8},
-        {.width = 64, .height = 64, .accum = FORMAT_RGBA16F},
+        {.width = 64, .height = 64, .accum = FORMAT_D32F},
+        {.width = 64, .height = 64, .accum = FORMAT_COUNT},
+        {.width = 64, .height = 64, .depth = FORMAT_RGBA8},
         {.width = 64, .height = 64, .depth = FORMAT_R32UI},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
