@@ -21,6 +21,7 @@
     X(CHECKNAMEDFRAMEBUFFERSTATUS, CheckNamedFramebufferStatus)                                    \
     X(CLAMPCOLOR, ClampColor)                                                                      \
     X(CLEARNAMEDFRAMEBUFFERFV, ClearNamedFramebufferfv)                                            \
+    X(CLIPCONTROL, ClipControl)                                                                    \
     X(COMPILESHADER, CompileShader)                                                                \
     X(CREATEBUFFERS, CreateBuffers)                                                                \
     X(CREATEFRAMEBUFFERS, CreateFramebuffers)                                                      \

@@ -27,7 +27,8 @@ static Result build_geometry(const RenderDesc *desc, GeometryPass pass, GLuint *
                                          "#define TRANSPARENT\n#define NEXT_PEEL\n"};
     PixelFormat depth = render_desc_depth(desc);
     char defines[256];
-    snprintf(defines, sizeof defines, "%s%s%s%s", stages[pass],
+    snprintf(defines, sizeof defines, "%s%s%s%s%s", stages[pass],
+             desc->depth_range == DEPTH_RANGE_REVERSED ? "#define REVERSED\n" : "",
              desc->normals == NORMALS_FACED ? "#define FACED\n" : "",
              desc->peel_test == PEEL_TEST_RAW ? "#define TEST_RAW\n" : "",
              depth == FORMAT_D24   ? "#define DEPTH_24\n"
@@ -68,7 +69,12 @@ static void set_constants(Passes *passes)
     gl.ProgramUniform3fv(passes->lighting, UNIFORM_AMBIENT, 1, passes->view->ambient);
     gl.ProgramUniform3fv(passes->resolve, UNIFORM_BACKGROUND, 1, passes->view->background);
     gl.Viewport(0, 0, desc->width, desc->height);
-    gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
+    if (desc->depth_range == DEPTH_RANGE_REVERSED)
+        gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_GEQUAL : GL_GREATER);
+    else
+        gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
+    gl.ClipControl(GL_LOWER_LEFT,
+                   desc->depth_range == DEPTH_RANGE_GL ? GL_NEGATIVE_ONE_TO_ONE : GL_ZERO_TO_ONE);
     gl.BindVertexArray(passes->meshes.vertex_array);
 }
 
@@ -106,9 +112,10 @@ void passes_destroy(Passes *passes)
     *passes = (Passes){0};
 }
 
-static void clear_gbuffer(GLuint framebuffer)
+static void clear_gbuffer(const Passes *passes, GLuint framebuffer)
 {
-    static const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f}, far = 1.0f;
+    static const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    const float far = passes->desc->depth_range == DEPTH_RANGE_REVERSED ? 0.0f : 1.0f;
     for (int i = 0; i < GBUFFER_TARGETS; i++)
         gl.ClearNamedFramebufferfv(framebuffer, GL_COLOR, i, zero);
     gl.ClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
@@ -149,19 +156,26 @@ Result passes_opaque_geometry(Passes *passes)
     static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     Targets *targets = &passes->targets;
     gl.ClearNamedFramebufferfv(targets->plain_buffer, GL_COLOR, 0, no_color_all_transmitted);
-    clear_gbuffer(targets->opaque_buffer);
+    clear_gbuffer(passes, targets->opaque_buffer);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->opaque_buffer);
     draw_list(passes, passes->geometry[GEOMETRY_OPAQUE], false);
-    return targets_copy_opaque_code(targets);
+    return targets_copy_code(targets, targets->opaque_buffer, targets->opaque_code);
 }
 
 Result passes_peel_geometry(Passes *passes, int peel, uint64_t *samples)
 {
     Targets *targets = &passes->targets;
     int current = peel & 1;
-    clear_gbuffer(targets->peel_buffer[current]);
+    clear_gbuffer(passes, targets->peel_buffer[current]);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->peel_buffer[current]);
-    gl.BindTextureUnit(0, peel > 0 ? targets->peel_depth[1 - current] : 0);
+    if (peel > 0) {
+        Result result =
+            targets_copy_code(targets, targets->peel_buffer[1 - current], targets->previous_code);
+        if (result != RESULT_OK)
+            return result;
+        gl.BindTextureUnit(0, targets->previous_code ? targets->previous_code
+                                                     : targets->peel_depth[1 - current]);
+    }
     gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque_depth);
     gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
     draw_list(passes, passes->geometry[peel > 0 ? GEOMETRY_NEXT_PEEL : GEOMETRY_FIRST_PEEL], true);

@@ -7,14 +7,10 @@
 #include <string.h>
 
 static const GLenum internal_formats[FORMAT_COUNT] = {
-    [FORMAT_RGBA32F] = GL_RGBA32F,
-    [FORMAT_RGBA16F] = GL_RGBA16F,
-    [FORMAT_RGBA16] = GL_RGBA16,
-    [FORMAT_RGBA8] = GL_RGBA8,
-    [FORMAT_D32F] = GL_DEPTH_COMPONENT32F,
-    [FORMAT_D24] = GL_DEPTH_COMPONENT24,
-    [FORMAT_D16] = GL_DEPTH_COMPONENT16,
-    [FORMAT_R32UI] = GL_R32UI,
+    [FORMAT_RGBA32F] = GL_RGBA32F,         [FORMAT_RGBA16F] = GL_RGBA16F,
+    [FORMAT_RGBA16] = GL_RGBA16,           [FORMAT_RGBA8] = GL_RGBA8,
+    [FORMAT_D32F] = GL_DEPTH_COMPONENT32F, [FORMAT_D24] = GL_DEPTH_COMPONENT24,
+    [FORMAT_D16] = GL_DEPTH_COMPONENT16,   [FORMAT_R32UI] = GL_R32UI,
 };
 
 static void choose_formats(const RenderDesc *desc, Targets *out)
@@ -28,10 +24,17 @@ static void choose_formats(const RenderDesc *desc, Targets *out)
     out->color_format[GBUFFER_MATERIAL] = layout.material;
 }
 
-/* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float. */
+/* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float: the two
+ * greatest are both 1. The opaque depth can be either of them, a previous peel's only where the
+ * near plane is at 1. */
 static bool needs_code(const RenderDesc *desc)
 {
     return render_desc_depth(desc) == FORMAT_D24 && desc->peel_test == PEEL_TEST_STORED;
+}
+
+static bool needs_previous_code(const RenderDesc *desc)
+{
+    return needs_code(desc) && desc->depth_range == DEPTH_RANGE_REVERSED;
 }
 
 static size_t count_bytes(const RenderDesc *desc, const Targets *targets)
@@ -41,8 +44,7 @@ static size_t count_bytes(const RenderDesc *desc, const Targets *targets)
         pixel += 2 * format_pixel_bytes(targets->color_format[i]);
     pixel += format_pixel_bytes(targets->accum_format);
     pixel += format_pixel_bytes(FORMAT_RGBA32F) + format_pixel_bytes(FORMAT_RGBA8);
-    if (needs_code(desc))
-        pixel += format_pixel_bytes(FORMAT_R32UI);
+    pixel += format_pixel_bytes(FORMAT_R32UI) * (needs_code(desc) + needs_previous_code(desc));
     return pixel * (size_t)desc->width * (size_t)desc->height;
 }
 
@@ -88,6 +90,8 @@ static void make_textures(const RenderDesc *desc, Targets *out)
     }
     if (needs_code(desc))
         out->opaque_code = make_texture(out, FORMAT_R32UI);
+    if (needs_previous_code(desc))
+        out->previous_code = make_texture(out, FORMAT_R32UI);
     out->accum = make_texture(out, out->accum_format);
     out->final = make_texture(out, FORMAT_RGBA32F);
     out->display = make_texture(out, FORMAT_RGBA8);
@@ -160,6 +164,7 @@ void targets_destroy(Targets *targets)
     gl.DeleteTextures(1, &targets->opaque_depth);
     gl.DeleteTextures(GBUFFER_TARGETS, targets->opaque_color);
     gl.DeleteTextures(1, &targets->opaque_code);
+    gl.DeleteTextures(1, &targets->previous_code);
     gl.DeleteTextures(2, targets->peel_depth);
     gl.DeleteTextures(GBUFFER_TARGETS, targets->peel_color);
     gl.DeleteTextures(1, &targets->accum);
@@ -168,17 +173,17 @@ void targets_destroy(Targets *targets)
     *targets = (Targets){0};
 }
 
-Result targets_copy_opaque_code(Targets *targets)
+Result targets_copy_code(Targets *targets, GLuint framebuffer, GLuint code)
 {
-    if (!targets->opaque_code)
+    if (!code)
         return RESULT_OK;
     size_t pixels = (size_t)targets->width * (size_t)targets->height;
     uint32_t *codes = memory_array(pixels, sizeof *codes);
     if (!codes)
         return RESULT_NO_MEMORY;
-    readback_depth(targets, targets->opaque_buffer, READBACK_BOTTOM_UP, codes);
-    gl.TextureSubImage2D(targets->opaque_code, 0, 0, 0, targets->width, targets->height,
-                         GL_RED_INTEGER, GL_UNSIGNED_INT, codes);
+    readback_depth(targets, framebuffer, READBACK_BOTTOM_UP, codes);
+    gl.TextureSubImage2D(code, 0, 0, 0, targets->width, targets->height, GL_RED_INTEGER,
+                         GL_UNSIGNED_INT, codes);
     free(codes);
     return RESULT_OK;
 }

@@ -21,7 +21,8 @@ typedef struct Targets {
     PixelFormat depth_format, accum_format;
     PixelFormat color_format[GBUFFER_TARGETS];
     GLuint opaque_depth, opaque_color[GBUFFER_TARGETS];
-    GLuint opaque_code; /* R32UI copy of a 24-bit opaque depth; 0 where it is not needed */
+    /* R32UI copies of 24-bit depths that a fetch would confuse; 0 where they are not needed. */
+    GLuint opaque_code, previous_code;
     GLuint peel_depth[2], peel_color[GBUFFER_TARGETS];
     GLuint accum, final, display;
     GLuint opaque_buffer, peel_buffer[2], plain_buffer, resolve_buffer; /* framebuffers */
@@ -33,7 +34,7 @@ typedef struct Targets {
 Result targets_create(Context *context, const RenderDesc *desc, Targets *out);
 void targets_destroy(Targets *targets); /* leaves an empty one */
 
-/* Copies the opaque depth's integers to opaque_code; nothing where there is none. */
-Result targets_copy_opaque_code(Targets *targets);
+/* Copies the depth integers of framebuffer to one of the code textures; nothing where it is 0. */
+Result targets_copy_code(Targets *targets, GLuint framebuffer, GLuint code);
 
 #endif

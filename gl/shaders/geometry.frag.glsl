@@ -4,6 +4,7 @@
 // TRANSPARENT    compare with the opaque depth
 // NEXT_PEEL      compare with the previous peel's depth as well
 // TEST_RAW       compare gl_FragCoord.z itself instead of its stored value
+// REVERSED       depth is 1 near and 0 far: comparisons are mirrored
 // DEPTH_24       depth is stored in 24 bits
 // DEPTH_16       in 16 bits
 
@@ -21,12 +22,29 @@ layout(location = 2) out vec4 out_diffuse;
 layout(location = 3) out vec4 out_material;
 
 #ifdef TRANSPARENT
-layout(binding = 0) uniform sampler2D previous_depth;
+// The fetched values of the two greatest 24-bit depths are both 1, so the integers are compared
+// where these can meet: at the far end, or reversed near the eye.
 #if defined(DEPTH_24) && !defined(TEST_RAW)
-// The fetched values of the two greatest 24-bit depths are both 1, so the integers are compared.
+#define OPAQUE_CODE
+#ifdef REVERSED
+#define PREVIOUS_CODE
+#endif
+#endif
+#ifdef OPAQUE_CODE
 layout(binding = 1) uniform usampler2D opaque_depth;
 #else
 layout(binding = 1) uniform sampler2D opaque_depth;
+#endif
+#ifdef PREVIOUS_CODE
+layout(binding = 0) uniform usampler2D previous_depth;
+#else
+layout(binding = 0) uniform sampler2D previous_depth;
+#endif
+
+#ifdef REVERSED
+#define AT_OR_BEHIND(a, b) ((a) <= (b))
+#else
+#define AT_OR_BEHIND(a, b) ((a) >= (b))
 #endif
 
 bool is_peeled_or_hidden()
@@ -40,8 +58,12 @@ bool is_peeled_or_hidden()
 #ifdef DEPTH_24
     precise float scaled = z * 16777215.0;
     precise float code = roundEven(scaled);
-    if (uint(code) >= texelFetch(opaque_depth, pixel, 0).r)
+    if (AT_OR_BEHIND(uint(code), texelFetch(opaque_depth, pixel, 0).r))
         return true;
+#if defined(NEXT_PEEL) && defined(PREVIOUS_CODE)
+    if (AT_OR_BEHIND(texelFetch(previous_depth, pixel, 0).r, uint(code)))
+        return true;
+#endif
     z = code * (1.0 / 16777215.0); // what a fetch of the stored depth gives
 #endif
 #ifdef DEPTH_16
@@ -50,12 +72,12 @@ bool is_peeled_or_hidden()
     z = float(floatBitsToUint(shifted) & 0xffffu) * (1.0 / 65535.0);
 #endif
 #endif
-#if defined(TEST_RAW) || !defined(DEPTH_24)
-    if (z >= texelFetch(opaque_depth, pixel, 0).r)
+#ifndef OPAQUE_CODE
+    if (AT_OR_BEHIND(z, texelFetch(opaque_depth, pixel, 0).r))
         return true;
 #endif
-#ifdef NEXT_PEEL
-    if (z <= texelFetch(previous_depth, pixel, 0).r)
+#if defined(NEXT_PEEL) && !defined(PREVIOUS_CODE)
+    if (AT_OR_BEHIND(texelFetch(previous_depth, pixel, 0).r, z))
         return true;
 #endif
     return false;

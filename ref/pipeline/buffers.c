@@ -1,6 +1,7 @@
 #include "ref/pipeline/buffers.h"
 
-Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth, GBuffer *out)
+Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth,
+                      DepthRange range, GBuffer *out)
 {
     GBufferLayout layout = gbuffer_layout(format);
     *out = (GBuffer){0};
@@ -22,7 +23,7 @@ Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat d
             return result;
         }
     }
-    gbuffer_clear(out);
+    gbuffer_clear(out, range);
     return RESULT_OK;
 }
 
@@ -42,14 +43,14 @@ static void clear_color(Image *image)
            (size_t)image->width * (size_t)image->height * format_pixel_bytes(image->format));
 }
 
-void gbuffer_clear(GBuffer *buffers)
+void gbuffer_clear(GBuffer *buffers, DepthRange range)
 {
     clear_color(&buffers->normal);
     clear_color(&buffers->position);
     clear_color(&buffers->diffuse);
     clear_color(&buffers->material);
     size_t pixels = (size_t)buffers->depth.width * (size_t)buffers->depth.height;
-    uint32_t far = depth_key_far(buffers->depth.format);
+    uint32_t far = depth_key_far(buffers->depth.format, range);
     uint32_t *depth = buffers->depth.pixels;
     for (size_t i = 0; i < pixels; i++)
         depth[i] = far;

@@ -19,10 +19,11 @@ typedef struct GBuffer {
 } GBuffer;
 
 /* Cleared. The caller frees with gbuffer_free. */
-Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth, GBuffer *out);
+Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth,
+                      DepthRange range, GBuffer *out);
 void gbuffer_free(GBuffer *buffers);
-/* Colours to 0, depth to 1, primitive to UINT32_MAX. */
-void gbuffer_clear(GBuffer *buffers);
+/* Colours to 0, depth to the far end, primitive to UINT32_MAX. */
+void gbuffer_clear(GBuffer *buffers, DepthRange range);
 
 /* Pixel (x, y) from the top left. Flushing mode. */
 void gbuffer_store(GBuffer *buffers, int x, int y, const Texel *texel);
@@ -45,8 +46,11 @@ static inline uint32_t depth_key(PixelFormat format, float z)
     return key;
 }
 
-static inline uint32_t depth_key_far(PixelFormat format)
+/* What the depth buffer is cleared to. */
+static inline uint32_t depth_key_far(PixelFormat format, DepthRange range)
 {
+    if (range == DEPTH_RANGE_REVERSED)
+        return 0;
     return format == FORMAT_D24 ? 0xffffffu : format == FORMAT_D16 ? 0xffffu : 0x3f800000u;
 }
 

@@ -2,13 +2,15 @@
 
 #include "number/op.h"
 
-Viewport viewport_make(int width, int height, bool fused)
+Viewport viewport_make(int width, int height, DepthRange range, bool fused)
 {
+    bool half_depth = range != DEPTH_RANGE_GL;
     float half_width = 0.5f * (float)width, half_height = 0.5f * (float)height;
     return (Viewport){
-        .scale = {half_width, half_height, 0.5f},
-        .translate = {half_width, half_height, 0.5f},
+        .scale = {half_width, half_height, half_depth ? 1.0f : 0.5f},
+        .translate = {half_width, half_height, half_depth ? 0.0f : 0.5f},
         .fused = fused,
+        .half_depth = half_depth,
     };
 }
 
@@ -23,7 +25,7 @@ void viewport_transform(const Viewport *viewport, bool cut, Vertex *vertex)
     vertex->y_fixed8 = op_round_to_int(op_mul(op_sub(vertex->window[1], 0.5f), 256.0f));
 }
 
-unsigned clip_outcode(const Vertex *vertex)
+unsigned clip_outcode(const Viewport *viewport, const Vertex *vertex)
 {
     float x = vertex->clip[0], y = vertex->clip[1], z = vertex->clip[2], w = vertex->clip[3];
     unsigned outcode = 0;
@@ -32,18 +34,20 @@ unsigned clip_outcode(const Vertex *vertex)
     outcode |= !(op_add(x, w) >= 0.0f) ? 2u : 0;
     outcode |= !(y <= w) ? 4u : 0;
     outcode |= !(op_add(y, w) >= 0.0f) ? 8u : 0;
-    outcode |= !(op_add(z, w) >= 0.0f) ? 16u : 0;
+    outcode |= !((viewport->half_depth ? z : op_add(z, w)) >= 0.0f) ? 16u : 0;
     outcode |= !(z <= w) ? 32u : 0;
     return outcode;
 }
 
 /* ((p0·x + p1·y) + p2·z) + p3·w with the plane's zeros and ones multiplied out. */
-static float plane_distance(const Vertex *vertex, int plane)
+static float plane_distance(const Viewport *viewport, const Vertex *vertex, int plane)
 {
     static const float planes[CLIP_PLANES][4] = {
         {-1, 0, 0, 1}, {1, 0, 0, 1}, {0, -1, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {0, 0, -1, 1},
     };
-    const float *p = planes[plane], *c = vertex->clip;
+    static const float near_half[4] = {0, 0, 1, 0};
+    const float *p = plane == 4 && viewport->half_depth ? near_half : planes[plane];
+    const float *c = vertex->clip;
     return op_add(op_add(op_add(op_mul(c[0], p[0]), op_mul(c[1], p[1])), op_mul(c[2], p[2])),
                   op_mul(c[3], p[3]));
 }
@@ -91,12 +95,12 @@ static bool clip_plane(const Viewport *viewport, const Vertex *const triangle[3]
 {
     out->count = 0;
     const ClipVertex *previous = &in->vertices[0];
-    float dp = plane_distance(resolve(triangle, previous), plane);
+    float dp = plane_distance(viewport, resolve(triangle, previous), plane);
     if (!isfinite(dp))
         return false;
     for (int i = 1; i <= in->count; i++) {
         const ClipVertex *current = &in->vertices[i % in->count];
-        float d = plane_distance(resolve(triangle, current), plane);
+        float d = plane_distance(viewport, resolve(triangle, current), plane);
         if (!isfinite(d))
             return false;
         if (dp >= 0.0f)

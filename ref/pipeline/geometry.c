@@ -108,7 +108,7 @@ static Result assemble(const Build *build, uint32_t draw_index, DrawOutput *outp
             primitive.vertex[i] =
                 (uint32_t)(output->first_vertex + mesh->index[3 * (size_t)t + (size_t)i]);
             corners[i] = &build->geometry->vertices[primitive.vertex[i]];
-            unsigned outcode = clip_outcode(corners[i]);
+            unsigned outcode = clip_outcode(&build->viewport, corners[i]);
             any |= outcode;
             all &= outcode;
         }
@@ -206,7 +206,7 @@ Result geometry_build(const Scene *scene, const View *view, bool fused, Pool *po
     Build build = {
         .scene = scene,
         .view = view,
-        .viewport = viewport_make(view->width, view->height, fused),
+        .viewport = viewport_make(view->width, view->height, view->depth_range, fused),
         .geometry = out,
     };
     Result result = allocate(&build);

@@ -47,17 +47,19 @@ void geometry_free(Geometry *geometry);
 typedef struct Viewport {
     float scale[3], translate[3];
     bool fused;
+    bool half_depth; /* the view volume is 0 ≤ z ≤ w, not −w ≤ z ≤ w */
 } Viewport;
 
 /* OpenGL 4.6, 13.8.1, for a viewport at (0, 0) and depth range 0…1. */
-Viewport viewport_make(int width, int height, bool fused);
+Viewport viewport_make(int width, int height, DepthRange range, bool fused);
 
 /* Fills window and fixed coordinates from clip coordinates. cut: the vertex was made by the
  * clipper, whose viewport transform the driver never fuses. */
 void viewport_transform(const Viewport *viewport, bool cut, Vertex *vertex);
 
-/* Bit i is set when the vertex is outside plane i: x ≤ w, x ≥ −w, y ≤ w, y ≥ −w, z ≥ −w, z ≤ w. */
-unsigned clip_outcode(const Vertex *vertex);
+/* Bit i is set when the vertex is outside plane i: x ≤ w, x ≥ −w, y ≤ w, y ≥ −w, z ≥ −w (or
+ * z ≥ 0), z ≤ w. */
+unsigned clip_outcode(const Viewport *viewport, const Vertex *vertex);
 
 enum {
     CLIP_VERTICES_MAX = 9,

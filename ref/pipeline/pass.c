@@ -83,6 +83,7 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
         .scene = scene,
         .limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT,
         .fused = !desc->unfused,
+        .reversed = desc->depth_range == DEPTH_RANGE_REVERSED,
         .depth_format = render_desc_depth(desc),
         .layout = gbuffer_layout(desc->gbuffer),
     };

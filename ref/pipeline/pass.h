@@ -29,7 +29,7 @@ typedef struct Pass {
     Bins opaque_bins, transparent_bins;
     uint32_t tile_columns, tile_count;
     uint64_t bytes, limit; /* reserved so far; the caller's --max-memory */
-    bool fused;
+    bool fused, reversed;
     PixelFormat depth_format;
     GBufferLayout layout;
 } Pass;
@@ -60,29 +60,36 @@ static inline FragmentDepth pass_fragment_depth(const Pass *pass, const Setup *s
 /* Whether a transparent fragment is behind the stored opaque depth. */
 static inline bool pass_hidden(const Pass *pass, FragmentDepth depth, uint32_t opaque)
 {
-    if (pass->desc->peel_test == PEEL_TEST_RAW)
-        return depth.z >= depth_fetch(pass->depth_format, opaque);
-    return depth.key >= opaque;
+    if (pass->desc->peel_test == PEEL_TEST_RAW) {
+        float fetched = depth_fetch(pass->depth_format, opaque);
+        return pass->reversed ? depth.z <= fetched : depth.z >= fetched;
+    }
+    return pass->reversed ? depth.key <= opaque : depth.key >= opaque;
 }
 
 /* Whether an earlier peel took it, or the layer in front of it. */
 static inline bool pass_peeled(const Pass *pass, FragmentDepth depth, uint32_t previous)
 {
-    if (pass->desc->peel_test == PEEL_TEST_RAW)
-        return depth.z <= depth_fetch(pass->depth_format, previous);
-    return depth.key <= previous;
+    if (pass->desc->peel_test == PEEL_TEST_RAW) {
+        float fetched = depth_fetch(pass->depth_format, previous);
+        return pass->reversed ? depth.z >= fetched : depth.z <= fetched;
+    }
+    return pass->reversed ? depth.key >= previous : depth.key <= previous;
 }
 
 /* Whether further peels would have come to it: behind the previous layer, and not discarded with
  * it by the raw test, which cannot tell two 24-bit depths apart where a fetch rounds up. */
 static inline bool pass_remains(const Pass *pass, FragmentDepth depth, uint32_t previous)
 {
-    return depth.key > previous && !pass_peeled(pass, depth, previous);
+    bool behind = pass->reversed ? depth.key < previous : depth.key > previous;
+    return behind && !pass_peeled(pass, depth, previous);
 }
 
 static inline bool pass_depth_test(const Pass *pass, uint32_t key, uint32_t stored)
 {
-    return pass->desc->depth_func == DEPTH_LEQUAL ? key <= stored : key < stored;
+    if (key == stored)
+        return pass->desc->depth_func == DEPTH_LEQUAL;
+    return pass->reversed ? key > stored : key < stored;
 }
 
 /* Counts of one tile or of the frame; see LayerStats. */

@@ -222,7 +222,7 @@ static void count_drawn(const TilePass *tile, uint64_t *drawn, uint64_t *repeate
 static int peel_tile(const TileJob *job, TilePass *tile, uint32_t number, PassCounts *counts)
 {
     Scratch *scratch = tile->scratch;
-    uint32_t far = depth_key_far(tile->pass->depth_format);
+    uint32_t far = depth_key_far(tile->pass->depth_format, tile->pass->desc->depth_range);
     int peel = 0;
     tile->previous = NULL;
     tile->index = scratch->index;
@@ -294,7 +294,7 @@ static __attribute__((noinline)) void render_tile(const TileJob *job, uint32_t n
 
     tile.key = scratch->opaque_key;
     tile.index = scratch->opaque_index;
-    fill(tile.key, depth_key_far(pass->depth_format));
+    fill(tile.key, depth_key_far(pass->depth_format, pass->desc->depth_range));
     fill(tile.index, PRIMITIVE_NONE);
     draw_opaque(&tile, number);
 

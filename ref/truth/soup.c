@@ -114,6 +114,11 @@ static SoupVertex transform(const View *view, const Draw *draw, const float *pos
         for (int column = 0; column < 3; column++)
             clip[row] += view->projection[4 * column + row] * vertex.position[column];
     }
+    /* The other clip spaces are brought to −w … w, near to far; exact but for the last bits. */
+    if (view->depth_range == DEPTH_RANGE_ZERO_ONE)
+        clip[2] = 2.0 * clip[2] - clip[3];
+    else if (view->depth_range == DEPTH_RANGE_REVERSED)
+        clip[2] = clip[3] - 2.0 * clip[2];
     vertex.corner = (Corner){(clip[0] + clip[3]) * (0.5 * view->width),
                              (clip[1] + clip[3]) * (0.5 * view->height), clip[2], clip[3]};
     return vertex;

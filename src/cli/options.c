@@ -169,6 +169,7 @@ enum {
     KEY_CULL,
     KEY_NORMALS,
     KEY_DEPTH_FUNC,
+    KEY_DEPTH_RANGE,
     KEY_PEEL_TEST,
     KEY_DEPTH,
     KEY_ACCUM,
@@ -199,6 +200,10 @@ static const struct argp_option render_options[] = {
      "On back faces: faced (default: turned to the viewer) or kept", 1},
     {"depth-func", KEY_DEPTH_FUNC, "FUNC", 0,
      "less (default: of equal depths the first drawn stays) or lequal (the last)", 1},
+    {"depth-range", KEY_DEPTH_RANGE, "RANGE", 0,
+     "gl (default: clip space -w to w), zero-one (0 to w), reversed (0 to w, depth 1 near and 0 "
+     "far)",
+     1},
     {"peel-test", KEY_PEEL_TEST, "TEST", 0,
      "stored (default: depths are compared as stored) or raw (gl_FragCoord.z with a stored depth)",
      1},
@@ -281,6 +286,7 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     static const char *const culls[] = {"gltf", "seed", "none"};
     static const char *const normals[] = {"faced", "kept"};
     static const char *const functions[] = {"less", "lequal"};
+    static const char *const ranges[] = {"gl", "zero-one", "reversed"};
     static const char *const tests[] = {"stored", "raw"};
     static const char *const gbuffers[] = {"full", "seed"};
     static const PixelFormat depth_formats[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
@@ -313,6 +319,10 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     case KEY_DEPTH_FUNC:
         error = parse_choice("--depth-func", argument, functions, 2, &choice);
         options->depth_func = choice;
+        break;
+    case KEY_DEPTH_RANGE:
+        error = parse_choice("--depth-range", argument, ranges, 3, &choice);
+        options->desc.depth_range = (DepthRange)choice;
         break;
     case KEY_PEEL_TEST:
         error = parse_choice("--peel-test", argument, tests, 2, &choice);

@@ -84,6 +84,16 @@ static int find(const uint32_t *ids, int count, uint32_t id)
     return -1;
 }
 
+/* A layer that the raw peel test took again is no fragment more. Returns the new count. */
+static int drop_repetitions(uint32_t *ids, int count)
+{
+    int kept = 0;
+    for (int i = 0; i < count; i++)
+        if (kept == 0 || ids[i] != ids[kept - 1])
+            ids[kept++] = ids[i];
+    return kept;
+}
+
 /* Two different sequences, their common ends cut off. */
 static void count_differences(const uint32_t *a, int count_a, const uint32_t *b, int count_b,
                               StructureCounts *out)
@@ -122,6 +132,8 @@ static StructureSame compare_pixel(Comparison *comparison, int p, StructureCount
     int count_b = gather(&comparison->b, p, comparison->sequence_b);
     if (count_a != count_b || memcmp(comparison->sequence_a, comparison->sequence_b,
                                      (size_t)count_a * sizeof(uint32_t)) != 0) {
+        count_a = drop_repetitions(comparison->sequence_a, count_a);
+        count_b = drop_repetitions(comparison->sequence_b, count_b);
         count_differences(comparison->sequence_a, count_a, comparison->sequence_b, count_b, out);
         return STRUCTURE_DIFFERS;
     }

@@ -7,7 +7,7 @@
 typedef struct StructureCounts {
     uint64_t order_inversions; /* adjacent fragments of a that b has in the other order */
     uint64_t opaque_flips;     /* pixels whose opaque.primitive differs */
-    uint64_t only_a, only_b;   /* transparent fragments that one side has alone */
+    uint64_t only_a, only_b; /* transparent fragments that one side has alone, repeated ones once */
 } StructureCounts;
 
 /* Whether two renderers see the same in a pixel. */

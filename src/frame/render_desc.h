@@ -26,6 +26,13 @@ typedef enum PeelTest {
     PEEL_TEST_STORED = 0,
     PEEL_TEST_RAW
 } PeelTest;
+/* gl: clip space −w ≤ z ≤ w, depth 0 near and 1 far. zero-one: 0 ≤ z ≤ w (clip control), the same
+ * depths. reversed: 0 ≤ z ≤ w, depth 1 near and 0 far; clears and comparisons are mirrored. */
+typedef enum DepthRange {
+    DEPTH_RANGE_GL = 0,
+    DEPTH_RANGE_ZERO_ONE,
+    DEPTH_RANGE_REVERSED
+} DepthRange;
 /* gltf: back faces of single-sided materials are culled; seed: of opaque materials only. */
 typedef enum CullMode {
     CULL_GLTF = 0,
@@ -78,7 +85,8 @@ typedef struct RenderDesc {
     PixelFormat depth; /* FORMAT_D32F, D24 or D16; FORMAT_RGBA32F (zero) means the default D32F */
     PixelFormat accum; /* FORMAT_RGBA32F, RGBA16F, RGBA16 or RGBA8 */
     GBufferFormat gbuffer;
-    DepthFunc depth_func;
+    DepthRange depth_range;
+    DepthFunc depth_func; /* reversed: GREATER and GEQUAL */
     PeelTest peel_test;
     CullMode cull;
     NormalMode normals;

@@ -14,7 +14,8 @@
  *   stored: depth; normal (N, 0); position (p, 1); diffuse (base colour, alpha; alpha 1 unless
  *   BLEND); material (roughness, metallic, occlusion, 0). Cleared to 0; depth to 1.
  *   A transparent fragment is discarded where its depth ≥ the opaque depth, and, from the second
- *   peel on, where its depth ≤ the previous peel's.
+ *   peel on, where its depth ≤ the previous peel's. With DEPTH_RANGE_REVERSED depth is cleared to 0
+ *   and every comparison of depths is mirrored.
  *
  * Lighting pass, per pixel, from the stored values P, N, diffuse, alpha, roughness, metallic, ao;
  * discarded where alpha ≤ SHADING_ALPHA_TEST:

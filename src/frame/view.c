@@ -127,6 +127,20 @@ static void add_lights(const Scene *scene, const RenderDesc *desc, const Matrix 
         out->lights[i] = make_light(&scene->lights[i], &world_to_view);
 }
 
+static Matrix make_projection(const Camera *camera, const RenderDesc *desc)
+{
+    double aspect = (double)desc->width / desc->height;
+    switch (desc->depth_range) {
+    case DEPTH_RANGE_GL:
+        break;
+    case DEPTH_RANGE_ZERO_ONE:
+        return matrix_perspective_zero_one(camera->yfov, aspect, camera->near, camera->far);
+    case DEPTH_RANGE_REVERSED:
+        return matrix_perspective_reversed(camera->yfov, aspect, camera->near, camera->far);
+    }
+    return matrix_perspective(camera->yfov, aspect, camera->near, camera->far);
+}
+
 Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
 {
     *out = (View){.width = desc->width, .height = desc->height};
@@ -137,12 +151,13 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
     Matrix view;
     if (!matrix_invert_affine(&camera->world, &view))
         return result_fail(RESULT_BAD_INPUT, "camera %d: its matrix has no inverse", desc->camera);
-    Matrix projection = matrix_perspective(camera->yfov, (double)desc->width / desc->height,
-                                           camera->near, camera->far);
+    out->depth_range = desc->depth_range;
+    Matrix projection = make_projection(camera, desc);
     matrix_round(&projection, out->projection);
     for (int i = 0; i < 4; i++) {
         static const int used[4] = {0, 5, 10, 14};
-        if (!isnormal(out->projection[used[i]]))
+        /* Reversed, the depth of infinity is 0. */
+        if (!isnormal(out->projection[used[i]]) && !(used[i] == 10 && out->projection[10] == 0.0f))
             return result_fail(RESULT_BAD_INPUT,
                                "camera %d: its projection (yfov %g, near %g, far %g) does not fit "
                                "in single precision",

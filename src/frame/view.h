@@ -28,6 +28,7 @@ typedef struct ViewLight {
 
 typedef struct View {
     int width, height;
+    DepthRange depth_range; /* which clip space projection leads to */
     float projection[16];
     size_t draw_count;
     Draw *draws; /* invisible instances (masked away, alpha < 1e-4) left out */

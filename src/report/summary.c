@@ -183,12 +183,13 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
     const PairReport *pair = &report->pairs[1];
     const UnaffectedMetrics *unaffected = &pair->unaffected;
     if (!report->structure.same_scene) {
-        char flips[SUMMARY_NUMBER], sets[SUMMARY_NUMBER];
+        char flips[SUMMARY_NUMBER], sets[SUMMARY_NUMBER], again[SUMMARY_NUMBER];
         snprintf(out, SUMMARY_LINE,
                  "ref and truth differ: they see other surfaces, %s opaque pixels and %s fragments "
-                 "are not the same.",
+                 "are not the same; %s fragments were peeled again.",
                  summary_count(report->structure.opaque_flips, flips),
-                 summary_count(report->structure.set_differs, sets));
+                 summary_count(report->structure.set_differs, sets),
+                 summary_count(report->structure.layers.repeated, again));
         return;
     }
     if (!unaffected->pixels) {

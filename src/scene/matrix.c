@@ -114,6 +114,22 @@ Matrix matrix_perspective(double yfov, double aspect, double near, double far)
     return a;
 }
 
+Matrix matrix_perspective_zero_one(double yfov, double aspect, double near, double far)
+{
+    Matrix a = matrix_perspective(yfov, aspect, near, far);
+    a.m[10] = isfinite(far) ? far / (near - far) : -1.0;
+    a.m[14] = isfinite(far) ? far * near / (near - far) : -near;
+    return a;
+}
+
+Matrix matrix_perspective_reversed(double yfov, double aspect, double near, double far)
+{
+    Matrix a = matrix_perspective(yfov, aspect, near, far);
+    a.m[10] = isfinite(far) ? near / (far - near) : 0.0;
+    a.m[14] = isfinite(far) ? far * near / (far - near) : near;
+    return a;
+}
+
 static double dot(const double a[3], const double b[3])
 {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];

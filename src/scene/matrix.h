@@ -32,6 +32,10 @@ double matrix_determinant3(const Matrix *a); /* of the upper-left 3×3 */
  * INFINITY. Source: glTF 2.0, 3.10.3.3 and 3.10.3.4. */
 Matrix matrix_perspective(double yfov, double aspect, double near, double far);
 
+/* The same to depths 0 near … 1 far, and to 1 near … 0 far. */
+Matrix matrix_perspective_zero_one(double yfov, double aspect, double near, double far);
+Matrix matrix_perspective_reversed(double yfov, double aspect, double near, double far);
+
 /* View matrix: eye at `eye`, looking at `target`; up must not be parallel to the gaze. */
 Matrix matrix_look_at(const double eye[3], const double target[3], const double up[3]);
 

@@ -129,7 +129,8 @@ static Result compare_structure(Run *run)
         counts.only_a + (counts.only_b > explained ? counts.only_b - explained : 0);
     /* A few pixels differ by the rounding of a vertex. Order is not judged: single precision
      * cannot tell close layers apart, and says so in the counts. */
-    uint64_t different = structure->opaque_flips + structure->set_differs;
+    uint64_t different =
+        structure->opaque_flips + structure->set_differs + structure->layers.repeated;
     uint64_t all = (uint64_t)width * (uint64_t)height + structure->layers.fragments;
     structure->same_scene = different <= all / 100 || different <= 4;
     return RESULT_OK;

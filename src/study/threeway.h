@@ -27,7 +27,7 @@ typedef struct StructureReport {
     uint64_t order_inversions; /* adjacent fragments that truth orders the other way */
     uint64_t opaque_flips;     /* pixels whose nearest opaque triangle differs */
     uint64_t set_differs;      /* fragments that only one side has, ties and limit apart */
-    bool same_scene; /* opaque_flips and set_differs within 1 % of pixels and fragments, or 4 */
+    bool same_scene; /* opaque_flips, set_differs and repeated: 1 % of pixels and fragments, or 4 */
     uint8_t *same;   /* width·height: a StructureSame each */
 } StructureReport;
 

@@ -78,6 +78,7 @@ exits 0 'unfused' "$peel" compare chain.gltf --size 64x36 --fma off
 has 'unfused' output 'separate'
 for choice in '--depth d24' '--depth d16' '--accum rgba16f' '--accum rgba16' '--accum rgba8' \
     '--gbuffer seed' '--peel-test raw' '--depth-func lequal' \
+    '--depth-range zero-one' '--depth-range reversed' '--depth-range reversed --depth d24' \
     '--cull none' '--cull seed' '--normals kept' '--profile seed --accum rgba8' \
     '--fma off --depth d16 --accum rgba16f'; do
     # shellcheck disable=SC2086 # words

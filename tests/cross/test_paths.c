@@ -36,6 +36,7 @@ static RenderDesc random_desc(Random *random)
         desc.depth = depths[random_bits(random) % 3];
         desc.accum = accums[random_bits(random) % 4];
         desc.gbuffer = (GBufferFormat)(random_bits(random) % 2);
+        desc.depth_range = (DepthRange)(random_bits(random) % 3);
         desc.depth_func = (DepthFunc)(random_bits(random) % 2);
         desc.peel_test = (PeelTest)(random_bits(random) % 2);
         desc.cull = (CullMode)(random_bits(random) % 3);
@@ -306,16 +307,20 @@ static uint64_t check_layer(const Traced *layer, const Traced *before, const Tra
     uint32_t far = depth_format == FORMAT_D24   ? 0xffffffu
                    : depth_format == FORMAT_D16 ? 0xffffu
                                                 : 0x3f800000u;
+    bool reversed = desc->depth_range == DEPTH_RANGE_REVERSED;
+    if (reversed)
+        far = 0;
     for (size_t i = 0; i < (size_t)desc->width * (size_t)desc->height; i++) {
-        uint32_t depth = word_at(layer->depth, i);
+        uint32_t depth = word_at(layer->depth, i), behind = word_at(opaque->depth, i);
+        uint32_t front = before ? word_at(before->depth, i) : 0;
         if (word_at(layer->primitive, i) == UINT32_MAX) {
             ck_assert_uint_eq(depth, far);
             continue;
         }
         drawn++;
-        if (depth >= word_at(opaque->depth, i) ||
-            (before &&
-             (word_at(before->primitive, i) == UINT32_MAX || depth <= word_at(before->depth, i))))
+        if ((reversed ? depth <= behind : depth >= behind) ||
+            (before && (word_at(before->primitive, i) == UINT32_MAX ||
+                        (reversed ? depth >= front : depth <= front))))
             ck_abort_msg("pixel %zu: depth 0x%x is out of order", i, depth);
     }
     return drawn;

@@ -12,7 +12,7 @@ static Viewport viewport;
 static void enter_mode(void)
 {
     saved_mode = op_enter();
-    viewport = viewport_make(WINDOW_SIZE, WINDOW_SIZE, true);
+    viewport = viewport_make(WINDOW_SIZE, WINDOW_SIZE, DEPTH_RANGE_GL, true);
 }
 
 static void leave_mode(void)
@@ -30,7 +30,8 @@ static Vertex clip_vertex(float x, float y, float z, float w)
 static int clip3(const Vertex v[3], ClipVertex out[CLIP_VERTICES_MAX])
 {
     const Vertex *const corners[3] = {&v[0], &v[1], &v[2]};
-    unsigned planes = clip_outcode(&v[0]) | clip_outcode(&v[1]) | clip_outcode(&v[2]);
+    unsigned planes = clip_outcode(&viewport, &v[0]) | clip_outcode(&viewport, &v[1]) |
+                      clip_outcode(&viewport, &v[2]);
     return clip_triangle(&viewport, corners, planes, out);
 }
 
@@ -54,8 +55,9 @@ START_TEST(test_outcode)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         Vertex vertex;
         memcpy(vertex.clip, rows[i].clip, sizeof vertex.clip);
-        ck_assert_msg(clip_outcode(&vertex) == rows[i].expected, "row %zu: got %u, expected %u", i,
-                      clip_outcode(&vertex), rows[i].expected);
+        ck_assert_msg(clip_outcode(&viewport, &vertex) == rows[i].expected,
+                      "row %zu: got %u, expected %u", i, clip_outcode(&viewport, &vertex),
+                      rows[i].expected);
     }
 }
 END_TEST
@@ -79,7 +81,8 @@ START_TEST(test_viewport)
     ck_assert_float_bits(fused.window[0], op_fma(ratio, 32.0f, 32.0f));
     ratio = op_mul(0.7f, op_div(1.0f, 0.9f));
     ck_assert_float_bits(cut.window[2], op_add(op_mul(ratio, 0.5f), 0.5f));
-    Viewport unfused = viewport_make(7, 5, false), odd = viewport_make(7, 5, true);
+    Viewport unfused = viewport_make(7, 5, DEPTH_RANGE_GL, false),
+             odd = viewport_make(7, 5, DEPTH_RANGE_GL, true);
     bool differs = false;
     for (int i = 0; i < 1000; i++) {
         Vertex a = {.clip = {0.001f * (float)i, 0.3f, 0.2f, 1.7f}}, b = a, c = a;
@@ -105,7 +108,7 @@ START_TEST(test_each_plane)
         Vertex v[3];
         for (int i = 0; i < 3; i++)
             v[i] = clip_vertex(clip[i][0], clip[i][1], clip[i][2], 1.0f);
-        ck_assert_uint_eq(clip_outcode(&v[2]), 1u << plane);
+        ck_assert_uint_eq(clip_outcode(&viewport, &v[2]), 1u << plane);
         ClipVertex out[CLIP_VERTICES_MAX];
         ck_assert_int_eq(clip3(v, out), 4);
         ck_assert_int_eq(out[0].source, 0);
@@ -242,6 +245,28 @@ START_TEST(test_pieces_cover_the_whole)
 }
 END_TEST
 
+/* With clip control the near plane is z = 0, and window depth is z/w. */
+START_TEST(test_zero_to_one)
+{
+    Viewport half = viewport_make(WINDOW_SIZE, WINDOW_SIZE, DEPTH_RANGE_ZERO_ONE, true);
+    Vertex v[3] = {{.clip = {0, 0, -1, 2}}, {.clip = {0.5f, 0, 1, 2}}, {.clip = {0, 0.5f, 1, 2}}};
+    ck_assert_uint_eq(clip_outcode(&viewport, &v[0]), 0);
+    ck_assert_uint_eq(clip_outcode(&half, &v[0]), 1u << 4);
+    ck_assert_uint_eq(clip_outcode(&half, &v[1]), 0);
+    for (int i = 0; i < 3; i++)
+        viewport_transform(&half, false, &v[i]);
+    ck_assert_float_bits(v[1].window[2], 0.5f);
+    const Vertex *const corners[3] = {&v[0], &v[1], &v[2]};
+    ClipVertex out[CLIP_VERTICES_MAX];
+    ck_assert_int_eq(clip_triangle(&half, corners, 1u << 4, out), 4);
+    for (int i = 0; i < 4; i++)
+        if (out[i].source < 0) {
+            ck_assert_float_bits(out[i].fresh.clip[2], 0.0f);
+            ck_assert_float_bits(out[i].fresh.window[2], 0.0f);
+        }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("clip");
@@ -249,6 +274,7 @@ int main(void)
     tcase_add_checked_fixture(tcase, enter_mode, leave_mode);
     tcase_set_timeout(tcase, 300);
     tcase_add_test(tcase, test_outcode);
+    tcase_add_test(tcase, test_zero_to_one);
     tcase_add_test(tcase, test_viewport);
     tcase_add_test(tcase, test_each_plane);
     tcase_add_test(tcase, test_cut_parameter);

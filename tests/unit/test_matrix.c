@@ -148,6 +148,27 @@ START_TEST(normal_matrix_of_a_flat_scale)
 END_TEST
 
 /* Known points: the near and far planes map to −1 and 1, the field's edge to 1. */
+static double depth_at(const Matrix *a, double z)
+{
+    return (a->m[10] * z + a->m[14]) / (a->m[11] * z);
+}
+
+START_TEST(perspective_to_other_depths)
+{
+    for (int endless = 0; endless < 2; endless++) {
+        double far = endless ? INFINITY : 100.0;
+        Matrix zero_one = matrix_perspective_zero_one(1.0, 1.5, 0.5, far);
+        Matrix reversed = matrix_perspective_reversed(1.0, 1.5, 0.5, far);
+        double distance = endless ? 1e18 : far;
+        ck_assert_double_eq_tol(depth_at(&zero_one, -0.5), 0.0, 1e-15);
+        ck_assert_double_eq_tol(depth_at(&zero_one, -distance), 1.0, 1e-15);
+        ck_assert_double_eq_tol(depth_at(&reversed, -0.5), 1.0, 1e-15);
+        ck_assert_double_eq_tol(depth_at(&reversed, -distance), 0.0, 1e-15);
+        ck_assert_double_eq_tol(depth_at(&zero_one, -7.0) + depth_at(&reversed, -7.0), 1.0, 1e-15);
+    }
+}
+END_TEST
+
 START_TEST(perspective_maps_the_frustum)
 {
     double aspect = 16.0 / 9.0, yfov = PI / 2.0;
@@ -205,6 +226,7 @@ int main(void)
     tcase_add_test(test, normal_matrix_keeps_right_angles);
     tcase_add_test(test, normal_matrix_of_a_flat_scale);
     tcase_add_test(test, perspective_maps_the_frustum);
+    tcase_add_test(test, perspective_to_other_depths);
     tcase_add_test(test, look_at_puts_the_target_ahead);
     tcase_add_test(test, rotation_about_y);
     suite_add_tcase(suite, test);

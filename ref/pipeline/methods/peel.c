@@ -286,7 +286,7 @@ static void count_drawn(const Peel *state, uint64_t *drawn, uint64_t *repeated)
 static Result draw_peel(Peel *state, bool *stop)
 {
     const RenderDesc *desc = state->pass->desc;
-    gbuffer_clear(&state->layer);
+    gbuffer_clear(&state->layer, desc->depth_range);
     Result result = run(state, geometry_tile);
     uint64_t drawn, repeated;
     count_drawn(state, &drawn, &repeated);
@@ -356,10 +356,11 @@ static Result allocate(Peel *state)
     const RenderDesc *desc = pass->desc;
     int width = pass->view.width, height = pass->view.height;
     size_t pixels = (size_t)width * (size_t)height;
-    Result result =
-        gbuffer_create(width, height, desc->gbuffer, pass->depth_format, &state->opaque);
+    Result result = gbuffer_create(width, height, desc->gbuffer, pass->depth_format,
+                                   desc->depth_range, &state->opaque);
     if (result == RESULT_OK)
-        result = gbuffer_create(width, height, desc->gbuffer, pass->depth_format, &state->layer);
+        result = gbuffer_create(width, height, desc->gbuffer, pass->depth_format, desc->depth_range,
+                                &state->layer);
     if (result == RESULT_OK)
         result = image_create(width, height, pass->depth_format, &state->previous_depth);
     if (result == RESULT_OK)
