@@ -187,6 +187,8 @@ Result minimise(const Scene *scene, const RenderDesc *desc, MinimiseFails fails,
         reduce_triangles(&m);
         reduce_settings(&m);
         reduce_lights(&m);
+        if (m.light_count == 0)
+            m.desc.lights = -1; /* a file without lights is given some */
         assemble(&m, m.triangles, m.count);
     }
     free(m.triangles);
