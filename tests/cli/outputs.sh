@@ -79,6 +79,7 @@ has 'unfused' output 'separate'
 for choice in '--depth d24' '--depth d16' '--accum rgba16f' '--accum rgba16' '--accum rgba8' \
     '--gbuffer seed' '--peel-test raw' '--depth-func lequal' \
     '--cull none' '--cull seed' '--normals kept' '--profile seed --accum rgba8' \
+    '--ggx stable' '--back-light on' '--profile seed --ggx stable --back-light on --fma off' \
     '--fma off --depth d16 --accum rgba16f'; do
     # shellcheck disable=SC2086 # words
     exits 0 "compare $choice" "$peel" compare tutorial --size 64x36 --tolerance 1 $choice
