@@ -37,21 +37,27 @@ static Result build_geometry(const RenderDesc *desc, GeometryPass pass, GLuint *
     return program_build(names[pass], defines, shader_geometry_vert, shader_geometry_frag, out);
 }
 
+static Result build_lighting(const Passes *passes, LightingPass pass, GLuint *out)
+{
+    static const char *const names[] = {"opaque lighting", "peel lighting"};
+    const RenderDesc *desc = passes->desc;
+    char defines[160];
+    snprintf(defines, sizeof defines, "#define LIGHT_COUNT %zu\n%s%s%s%s",
+             passes->view->light_count, passes->lights.storage ? "#define LIGHTS_STORAGE\n" : "",
+             desc->accum == FORMAT_RGBA8 ? "#define ACCUM_8\n" : "",
+             desc->ggx == GGX_STABLE ? "#define GGX_STABLE\n" : "",
+             desc->back_light && pass == LIGHTING_PEEL ? "#define BACK_LIGHT\n" : "");
+    return program_build(names[pass], defines, shader_fullscreen_vert, shader_lighting_frag, out);
+}
+
 static Result build_programs(Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
     Result result = RESULT_OK;
     for (int i = 0; i < GEOMETRY_PASSES && result == RESULT_OK; i++)
         result = build_geometry(desc, (GeometryPass)i, &passes->geometry[i]);
-    if (result != RESULT_OK)
-        return result;
-
-    char defines[96];
-    snprintf(defines, sizeof defines, "#define LIGHT_COUNT %zu\n%s%s", passes->view->light_count,
-             passes->lights.storage ? "#define LIGHTS_STORAGE\n" : "",
-             desc->accum == FORMAT_RGBA8 ? "#define ACCUM_8\n" : "");
-    result = program_build("lighting", defines, shader_fullscreen_vert, shader_lighting_frag,
-                           &passes->lighting);
+    for (int i = 0; i < LIGHTING_PASSES && result == RESULT_OK; i++)
+        result = build_lighting(passes, (LightingPass)i, &passes->lighting[i]);
     if (result == RESULT_OK)
         result = program_build(
             "resolve", desc->opaque_blend == OPAQUE_BLEND_SEED ? "#define SEED_BLEND\n" : "",
@@ -66,7 +72,8 @@ static void set_constants(Passes *passes)
     for (int i = 0; i < GEOMETRY_PASSES; i++)
         gl.ProgramUniformMatrix4fv(passes->geometry[i], UNIFORM_PROJECTION, 1, GL_FALSE,
                                    passes->view->projection);
-    gl.ProgramUniform3fv(passes->lighting, UNIFORM_AMBIENT, 1, passes->view->ambient);
+    for (int i = 0; i < LIGHTING_PASSES; i++)
+        gl.ProgramUniform3fv(passes->lighting[i], UNIFORM_AMBIENT, 1, passes->view->ambient);
     gl.ProgramUniform3fv(passes->resolve, UNIFORM_BACKGROUND, 1, passes->view->background);
     gl.Viewport(0, 0, desc->width, desc->height);
     if (desc->depth_range == DEPTH_RANGE_REVERSED)
@@ -106,7 +113,8 @@ void passes_destroy(Passes *passes)
     upload_free_lights(&passes->lights);
     for (int i = 0; i < GEOMETRY_PASSES; i++)
         gl.DeleteProgram(passes->geometry[i]);
-    gl.DeleteProgram(passes->lighting);
+    for (int i = 0; i < LIGHTING_PASSES; i++)
+        gl.DeleteProgram(passes->lighting[i]);
     gl.DeleteProgram(passes->resolve);
     gl.DeleteQueries(1, &passes->samples);
     *passes = (Passes){0};
@@ -186,12 +194,12 @@ Result passes_peel_geometry(Passes *passes, int peel, uint64_t *samples)
     return context_check(passes->context, "peel");
 }
 
-static void light(const Passes *passes, const GLuint color[GBUFFER_TARGETS])
+static void light(const Passes *passes, LightingPass pass, const GLuint color[GBUFFER_TARGETS])
 {
     for (GLuint i = 0; i < GBUFFER_TARGETS; i++)
         gl.BindTextureUnit(i, color[i]);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, passes->targets.plain_buffer);
-    gl.UseProgram(passes->lighting);
+    gl.UseProgram(passes->lighting[pass]);
     gl.Enable(GL_BLEND);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
     gl.Disable(GL_BLEND);
@@ -200,7 +208,7 @@ static void light(const Passes *passes, const GLuint color[GBUFFER_TARGETS])
 void passes_peel_lighting(Passes *passes)
 {
     gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-    light(passes, passes->targets.peel_color);
+    light(passes, LIGHTING_PEEL, passes->targets.peel_color);
 }
 
 void passes_opaque_lighting(Passes *passes)
@@ -209,7 +217,7 @@ void passes_opaque_lighting(Passes *passes)
         gl.BlendFunc(GL_DST_ALPHA, GL_ONE);
     else
         gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-    light(passes, passes->targets.opaque_color);
+    light(passes, LIGHTING_OPAQUE, passes->targets.opaque_color);
 }
 
 void passes_resolve(Passes *passes)

@@ -15,6 +15,12 @@ typedef enum GeometryPass {
     GEOMETRY_PASSES
 } GeometryPass;
 
+typedef enum LightingPass {
+    LIGHTING_OPAQUE = 0,
+    LIGHTING_PEEL,
+    LIGHTING_PASSES
+} LightingPass;
+
 typedef struct Passes {
     Context *context;
     const Scene *scene; /* borrowed */
@@ -23,8 +29,8 @@ typedef struct Passes {
     Targets targets;
     Meshes meshes;
     LightBuffer lights;
-    GLuint geometry[GEOMETRY_PASSES], lighting, resolve; /* programs */
-    GLuint samples;                                      /* query */
+    GLuint geometry[GEOMETRY_PASSES], lighting[LIGHTING_PASSES], resolve; /* programs */
+    GLuint samples;                                                       /* query */
 } Passes;
 
 /* Uploads the scene and builds programs and buffers; scene, desc and view must outlive *out. On

@@ -3,6 +3,8 @@
 //
 // LIGHT_COUNT      number of lights
 // LIGHTS_STORAGE   they do not fit a uniform block
+// GGX_STABLE       the distribution without cancellation
+// BACK_LIGHT       lights behind the surface add their specular lobe
 // ACCUM_8          the accumulation buffer has 8 bits a channel
 
 layout(binding = 0) uniform sampler2D normal_buffer;
@@ -65,13 +67,28 @@ void main()
         precise float d2 = max(dot(D, D), DISTANCE2_MIN);
         precise float d = sqrt(d2);
         precise vec3 L = D * (1.0 / d);
+        precise float u = dot(N, L);
+#ifdef BACK_LIGHT
+        precise float m = max(-u, 0.0);
+        L = L + 2.0 * m * N;
+        precise float NL = max(u, m);
+        precise vec3 direct = u < 0.0 ? vec3(0.0) : lambert;
+#else
+        precise float NL = max(u, 0.0);
+        precise vec3 direct = lambert;
+#endif
         precise vec3 h = V + L;
         precise float h2 = max(dot(h, h), TINY);
         precise vec3 H = h * inversesqrt(h2);
-        precise float NL = max(dot(N, L), 0.0);
         precise float NH = max(dot(N, H), 0.0);
         precise float HV = max(dot(H, V), 0.0);
+#ifdef GGX_STABLE
+        precise vec3 S = cross(N, H);
+        precise float S2 = dot(S, S);
+        precise float den = max(NH * NH * a2 + S2, a2);
+#else
         precise float den = NH * NH * am + 1.0;
+#endif
         precise float dist = a2 / (PI * den * den);
         precise float GL = NL / (NL * km + k);
         precise float x = clamp(1.0 - HV, 0.0, 1.0);
@@ -81,7 +98,7 @@ void main()
         precise float s = dist * (GV * GL) / (NV4 * NL + SPECULAR_BIAS);
         precise float att = 1.0 / (attenuation.x + attenuation.y * d + attenuation.z * d2);
         precise vec3 radiance = lights[i].color.rgb * att * NL;
-        sum = sum + ((1.0 - F) * lambert + F * s) * radiance;
+        sum = sum + ((1.0 - F) * direct + F * s) * radiance;
     }
 #endif
     precise vec3 color = sum + ambient * diffuse * material.z;

@@ -7,6 +7,7 @@
 #include "frame/view.h"
 #include "ref/pipeline/buffers.h"
 #include "ref/pipeline/setup.h"
+#include "ref/pipeline/shade.h"
 
 enum {
     TILE = TRACE_TILE,
@@ -44,6 +45,12 @@ Result pass_reserve(Pass *pass, uint64_t bytes);
 PixelRect pass_tile_rect(const Pass *pass, uint32_t tile);
 
 void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out);
+
+/* Of the lighting pass of a peel, or of the opaque surfaces. */
+static inline ShadeForm pass_shade_form(const Pass *pass, bool transparent)
+{
+    return (ShadeForm){pass->desc->ggx, pass->desc->back_light && transparent};
+}
 
 /* A fragment's depth as computed (gl_FragCoord.z) and as stored (depth_key). */
 typedef struct FragmentDepth {

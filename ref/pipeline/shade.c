@@ -3,7 +3,7 @@
 #define LANES 1
 #include "ref/pipeline/shade_body.h"
 
-bool shade_pixel(const View *view, const Texel *texel, float source[4])
+bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4])
 {
     if (texel->diffuse[3] <= SHADING_ALPHA_TEST)
         return false;
@@ -15,7 +15,7 @@ bool shade_pixel(const View *view, const Texel *texel, float source[4])
     }
     for (int i = 0; i < 4; i++)
         batch.diffuse[i][0] = texel->diffuse[i];
-    shade_batch(view, &batch);
+    shade_batch(view, form, &batch);
     for (int i = 0; i < 4; i++)
         source[i] = batch.source[i][0];
     return true;

@@ -2,14 +2,21 @@
 #ifndef PEEL_REF_SHADE_H
 #define PEEL_REF_SHADE_H
 
+#include "frame/render_desc.h"
 #include "frame/shading.h"
 #include "frame/view.h"
 #include "number/op.h"
 #include "ref/pipeline/buffers.h"
 
+/* Which of the formula's variants a lighting pass uses. */
+typedef struct ShadeForm {
+    GgxForm ggx;
+    bool back_light;
+} ShadeForm;
+
 /* From fetched G-buffer values to the premultiplied source colour; false where the alpha test
  * discards. Flushing mode. */
-bool shade_pixel(const View *view, const Texel *texel, float source[4]);
+bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
 
 /* Resolve: final colour over the background from an accumulated pixel whose transmittance to the
  * background is `transmittance`. Flushing mode, as below. */

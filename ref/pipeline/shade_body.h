@@ -6,6 +6,7 @@
 #include "frame/shading.h"
 #include "frame/view.h"
 #include "number/lanes.h"
+#include "ref/pipeline/shade.h"
 
 /* Fetched G-buffer values, one array entry per lane; alpha has passed the alpha test. */
 typedef struct ShadeBatch {
@@ -65,7 +66,35 @@ static inline void shade_surface(const ShadeBatch *batch, Surface *out)
     }
 }
 
-static inline void shade_light(const Surface *surface, const ViewLight *light, Lanes sum[3])
+/* The distribution's denominator, in the form asked for. */
+static inline Lanes shade_denominator(const ShadeForm *form, const Surface *surface,
+                                      const Lanes half_vector[3])
+{
+    Lanes n_dot_h = lanes_max(lanes_dot3(surface->normal, half_vector), lanes_all(0.0f));
+    Lanes n_dot_h2 = lanes_mul(n_dot_h, n_dot_h), sine[3];
+    if (form->ggx == GGX_SOURCE)
+        return lanes_add(lanes_mul(n_dot_h2, surface->a2_minus_1), lanes_all(1.0f));
+    lanes_cross(surface->normal, half_vector, sine);
+    return lanes_max(lanes_add(lanes_mul(n_dot_h2, surface->a2), lanes_dot3(sine, sine)),
+                     surface->a2);
+}
+
+/* Mirrors the directions of lights behind the surface to its normal's side, and takes their
+ * Lambert term; u = dot(N, L). Returns |u|. */
+static inline Lanes shade_mirror(const Surface *surface, Lanes u, Lanes direction[3],
+                                 Lanes lambert[3])
+{
+    Lanes zero = lanes_all(0.0f), behind = lanes_max(LANES_NEG(u), zero);
+    Lanes twice = lanes_mul(lanes_all(2.0f), behind);
+    for (int i = 0; i < 3; i++) {
+        direction[i] = lanes_add(direction[i], lanes_mul(twice, surface->normal[i]));
+        lambert[i] = lanes_where_less(u, zero, zero, lambert[i]);
+    }
+    return lanes_max(u, behind);
+}
+
+static inline void shade_light(const ShadeForm *form, const Surface *surface,
+                               const ViewLight *light, Lanes sum[3])
 {
     Lanes one = lanes_all(1.0f), zero = lanes_all(0.0f);
     Lanes to_light[3], direction[3], half_sum[3], half_vector[3];
@@ -74,17 +103,18 @@ static inline void shade_light(const Surface *surface, const ViewLight *light, L
     Lanes distance2 = lanes_max(lanes_dot3(to_light, to_light), lanes_all(SHADING_DISTANCE2_MIN));
     Lanes distance = lanes_sqrt(distance2);
     Lanes inverse_distance = lanes_div(one, distance);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         direction[i] = lanes_mul(to_light[i], inverse_distance);
+    Lanes u = lanes_dot3(surface->normal, direction), n_dot_l = lanes_max(u, zero);
+    Lanes lambert[3] = {surface->lambert[0], surface->lambert[1], surface->lambert[2]};
+    if (form->back_light)
+        n_dot_l = shade_mirror(surface, u, direction, lambert);
+    for (int i = 0; i < 3; i++)
         half_sum[i] = lanes_add(surface->view[i], direction[i]);
-    }
     shade_normalize(half_sum, half_vector);
-
-    Lanes n_dot_l = lanes_max(lanes_dot3(surface->normal, direction), zero);
-    Lanes n_dot_h = lanes_max(lanes_dot3(surface->normal, half_vector), zero);
     Lanes h_dot_v = lanes_max(lanes_dot3(half_vector, surface->view), zero);
 
-    Lanes denominator = lanes_add(lanes_mul(lanes_mul(n_dot_h, n_dot_h), surface->a2_minus_1), one);
+    Lanes denominator = shade_denominator(form, surface, half_vector);
     Lanes distribution = lanes_div(
         surface->a2, lanes_mul(lanes_mul(lanes_all(SHADING_PI), denominator), denominator));
     Lanes geometry_light =
@@ -102,21 +132,21 @@ static inline void shade_light(const Surface *surface, const ViewLight *light, L
                                  lanes_mul(lanes_all(light->attenuation[2]), distance2)));
     for (int i = 0; i < 3; i++) {
         Lanes fresnel = lanes_add(surface->f0[i], lanes_mul(surface->one_minus_f0[i], x5));
-        Lanes reflected = lanes_add(lanes_mul(lanes_sub(one, fresnel), surface->lambert[i]),
-                                    lanes_mul(fresnel, specular));
+        Lanes reflected =
+            lanes_add(lanes_mul(lanes_sub(one, fresnel), lambert[i]), lanes_mul(fresnel, specular));
         Lanes radiance = lanes_mul(lanes_mul(lanes_all(light->color[i]), attenuation), n_dot_l);
         sum[i] = lanes_add(sum[i], lanes_mul(reflected, radiance));
     }
 }
 
 /* Fills batch->source. Flushing mode. */
-static inline void shade_batch(const View *view, ShadeBatch *batch)
+static inline void shade_batch(const View *view, const ShadeForm *form, ShadeBatch *batch)
 {
     Surface surface;
     shade_surface(batch, &surface);
     Lanes sum[3] = {lanes_all(0.0f), lanes_all(0.0f), lanes_all(0.0f)};
     for (size_t i = 0; i < view->light_count; i++)
-        shade_light(&surface, &view->lights[i], sum);
+        shade_light(form, &surface, &view->lights[i], sum);
     Lanes alpha = lanes_load(batch->diffuse[3]);
     for (int i = 0; i < 3; i++) {
         Lanes ambient =

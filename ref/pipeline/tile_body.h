@@ -140,6 +140,7 @@ static inline __attribute__((always_inline)) void draw_transparent(TilePass *til
 typedef struct Gathered {
     const TilePass *tile;
     bool seed_blend;
+    ShadeForm form;
     int count;
     int pixel[LANES];
     ShadeBatch batch;
@@ -148,7 +149,7 @@ typedef struct Gathered {
 static void light_batch(Gathered *gathered)
 {
     const Pass *pass = gathered->tile->pass;
-    shade_batch(&pass->view, &gathered->batch);
+    shade_batch(&pass->view, &gathered->form, &gathered->batch);
     for (int lane = 0; lane < gathered->count; lane++) {
         float color[4];
         for (int i = 0; i < 4; i++)
@@ -178,12 +179,18 @@ static inline void gather(Gathered *gathered, int pixel, const Texel *texel)
         light_batch(gathered);
 }
 
-/* Lights the winners in tile->index and blends them. */
-static void light(const TilePass *tile, const PrimitiveList *list, bool seed_blend)
+/* Lights the winners in tile->index, which are of the transparent list or of the opaque one, and
+ * blends them. */
+static void light(const TilePass *tile, bool transparent)
 {
     const Pass *pass = tile->pass;
+    const PrimitiveList *list = transparent ? &pass->geometry.transparent : &pass->geometry.opaque;
     /* Lanes that the last batch leaves unused are lit too: zeros give finite values. */
-    Gathered gathered = {.tile = tile, .seed_blend = seed_blend};
+    Gathered gathered = {
+        .tile = tile,
+        .seed_blend = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED,
+        .form = pass_shade_form(pass, transparent),
+    };
     Setup setup;
     uint32_t last = PRIMITIVE_NONE;
     for (int y = tile->rect.y0; y <= tile->rect.y1; y++)
@@ -238,7 +245,7 @@ static int peel_tile(const TileJob *job, TilePass *tile, uint32_t number, PassCo
         counts->peeled += drawn;
         counts->repeated += repeated;
         if (!job->dry)
-            light(tile, &tile->pass->geometry.transparent, false);
+            light(tile, true);
         tile->previous = tile->key;
     }
     return peel;
@@ -303,7 +310,7 @@ static __attribute__((noinline)) void render_tile(const TileJob *job, uint32_t n
         return;
     count_tile(job, &tile, number, job->peels[number], counts);
     tile.index = scratch->opaque_index;
-    light(&tile, &pass->geometry.opaque, pass->desc->opaque_blend == OPAQUE_BLEND_SEED);
+    light(&tile, false);
     resolve_tile(job, &tile);
 }
 

@@ -24,6 +24,7 @@ static void normalize(const double v[3], double out[3])
 
 /* What all lights share at one surface point; names as in frame/shading.h. */
 typedef struct Point {
+    bool back_light;
     double P[3], N[3], V[3];
     double a2, k, NV, GV;
     double F0[3], lambert[3];
@@ -32,7 +33,7 @@ typedef struct Point {
 static Point point_setup(const Surface *surface)
 {
     const Material *material = surface->material;
-    Point point;
+    Point point = {.back_light = surface->back_light};
     const double to_eye[3] = {-surface->position[0], -surface->position[1], -surface->position[2]};
     normalize(surface->normal, point.N);
     normalize(to_eye, point.V);
@@ -52,6 +53,18 @@ static Point point_setup(const Surface *surface)
     return point;
 }
 
+/* Turns a light behind the surface to the front, as if the surface were lit from there; the cosine
+ * between normal and light. */
+static double mirror(const Point *point, double L[3])
+{
+    double NL = dot(point->N, L);
+    if (NL >= 0.0)
+        return NL;
+    for (int i = 0; i < 3; i++)
+        L[i] -= 2.0 * NL * point->N[i];
+    return -NL;
+}
+
 /* One light's term, added to rgb. */
 static void add_light(const Point *point, const ViewLight *light, double rgb[3])
 {
@@ -60,13 +73,16 @@ static void add_light(const Point *point, const ViewLight *light, double rgb[3])
         D[i] = light->position[i] - point->P[i];
     double d2 = at_least(dot(D, D), SHADING_DISTANCE2_MIN);
     double d = sqrt(d2);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         L[i] = D[i] / d;
-        h[i] = point->V[i] + L[i];
-    }
-    double NL = at_least(dot(point->N, L), 0.0);
+    bool behind = dot(point->N, L) < 0.0;
+    if (behind && !point->back_light)
+        return;
+    double NL = mirror(point, L);
     if (NL == 0.0)
         return; /* the whole term is multiplied by it */
+    for (int i = 0; i < 3; i++)
+        h[i] = point->V[i] + L[i];
     normalize(h, H);
     double NH = at_least(dot(point->N, H), 0.0);
     double HV = at_least(dot(H, point->V), 0.0);
@@ -82,7 +98,8 @@ static void add_light(const Point *point, const ViewLight *light, double rgb[3])
         1.0 / (light->attenuation[0] + light->attenuation[1] * d + light->attenuation[2] * d2);
     for (int i = 0; i < 3; i++) {
         double F = point->F0[i] + (1.0 - point->F0[i]) * x5;
-        rgb[i] += ((1.0 - F) * point->lambert[i] + F * s) * (light->color[i] * attenuation * NL);
+        double diffused = behind ? 0.0 : (1.0 - F) * point->lambert[i];
+        rgb[i] += (diffused + F * s) * (light->color[i] * attenuation * NL);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "frame/view.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* A point of a surface in view space. */
@@ -11,6 +12,7 @@ typedef struct Surface {
     double position[3];
     double normal[3]; /* any length; normalised here */
     const Material *material;
+    bool back_light; /* lights behind it add their specular lobe */
 } Surface;
 
 /* What the surface sends to the eye: linear, not multiplied by alpha. */

@@ -40,7 +40,9 @@ static void shade_fragment(const Render *render, const Fragment *fragment, int x
     ExactPoint point;
     exact_at(corners, x, y, &point);
     bool turned = fragment->back && render->desc->normals == NORMALS_FACED;
-    Surface surface = {.material = soup_draw(&render->soup, fragment->triangle)->material};
+    const SoupDraw *draw = soup_draw(&render->soup, fragment->triangle);
+    Surface surface = {.material = draw->material,
+                       .back_light = render->desc->back_light && draw->draw->transparent};
     for (int i = 0; i < 3; i++) {
         double position = 0.0, normal = 0.0;
         for (int corner = 0; corner < 3; corner++) {

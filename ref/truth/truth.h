@@ -4,7 +4,7 @@
  * and none of their rasterizing, sorting, shading or blending. Coverage follows the GL contract
  * (clipped pieces snapped to 1/256 pixel); depth and attributes are those of the exact, unclipped,
  * unsnapped triangle at the pixel's centre. No pass limit, no stored formats: desc's method,
- * passes, depth, accum, gbuffer, peel_test, opaque_blend and unfused change nothing.
+ * passes, depth, accum, gbuffer, peel_test, ggx, opaque_blend and unfused change nothing.
  *
  * It does not resolve depths closer than double precision: surfaces that coincide only in exact
  * arithmetic, not in double, come in the order of their rounding (exact.h states its size).

@@ -168,6 +168,8 @@ enum {
     KEY_PROFILE,
     KEY_CULL,
     KEY_NORMALS,
+    KEY_GGX,
+    KEY_BACK_LIGHT,
     KEY_DEPTH_FUNC,
     KEY_DEPTH_RANGE,
     KEY_PEEL_TEST,
@@ -198,6 +200,12 @@ static const struct argp_option render_options[] = {
      1},
     {"normals", KEY_NORMALS, "MODE", 0,
      "On back faces: faced (default: turned to the viewer) or kept", 1},
+    {"ggx", KEY_GGX, "FORM", 0,
+     "Highlights' distribution: source (default: as the original computes it) or stable (without "
+     "its cancellation)",
+     1},
+    {"back-light", KEY_BACK_LIGHT, "on|off", 0,
+     "Transparent surfaces also reflect lights behind them (default off)", 1},
     {"depth-func", KEY_DEPTH_FUNC, "FUNC", 0,
      "less (default: of equal depths the first drawn stays) or lequal (the last)", 1},
     {"depth-range", KEY_DEPTH_RANGE, "RANGE", 0,
@@ -282,9 +290,10 @@ static error_t parse_lights(const char *text, RenderDesc *desc)
 static error_t parse_named(int key, const char *argument, RenderOptions *options)
 {
     static const char *const profiles[] = {"default", "seed"};
-    static const char *const fma[] = {"on", "off"};
+    static const char *const switches[] = {"on", "off"};
     static const char *const culls[] = {"gltf", "seed", "none"};
     static const char *const normals[] = {"faced", "kept"};
+    static const char *const forms[] = {"source", "stable"};
     static const char *const functions[] = {"less", "lequal"};
     static const char *const ranges[] = {"gl", "zero-one", "reversed"};
     static const char *const tests[] = {"stored", "raw"};
@@ -305,7 +314,7 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
         options->seed_profile = choice == 1;
         break;
     case KEY_FMA:
-        error = parse_choice("--fma", argument, fma, 2, &choice);
+        error = parse_choice("--fma", argument, switches, 2, &choice);
         options->fma = choice == 0 ? FMA_ON : FMA_OFF;
         break;
     case KEY_CULL:
@@ -315,6 +324,14 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     case KEY_NORMALS:
         error = parse_choice("--normals", argument, normals, 2, &choice);
         options->normals = choice;
+        break;
+    case KEY_GGX:
+        error = parse_choice("--ggx", argument, forms, 2, &choice);
+        options->ggx = choice;
+        break;
+    case KEY_BACK_LIGHT:
+        error = parse_choice("--back-light", argument, switches, 2, &choice);
+        options->back_light = choice == 0;
         break;
     case KEY_DEPTH_FUNC:
         error = parse_choice("--depth-func", argument, functions, 2, &choice);
@@ -402,6 +419,8 @@ RenderOptions options_default(void)
         .desc = {.width = 1280, .height = 720},
         .cull = -1,
         .normals = -1,
+        .ggx = -1,
+        .back_light = -1,
         .depth_func = -1,
         .peel_test = -1,
         .gbuffer = -1,
@@ -463,6 +482,10 @@ Result options_load_scene(RenderOptions *options, Scene *out)
         options->desc.cull = (CullMode)options->cull;
     if (options->normals >= 0)
         options->desc.normals = (NormalMode)options->normals;
+    if (options->ggx >= 0)
+        options->desc.ggx = (GgxForm)options->ggx;
+    if (options->back_light >= 0)
+        options->desc.back_light = options->back_light;
     if (options->depth_func >= 0)
         options->desc.depth_func = (DepthFunc)options->depth_func;
     if (options->peel_test >= 0)

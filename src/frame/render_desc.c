@@ -9,6 +9,8 @@ void render_desc_seed_profile(RenderDesc *desc)
     desc->peel_test = PEEL_TEST_RAW;
     desc->cull = CULL_SEED;
     desc->normals = NORMALS_KEPT;
+    desc->ggx = GGX_SOURCE;
+    desc->back_light = false;
     desc->opaque_blend = OPAQUE_BLEND_SEED;
 }
 
@@ -19,7 +21,8 @@ bool render_desc_is_seed(const RenderDesc *desc)
     return seed.gbuffer == desc->gbuffer && seed.depth == desc->depth &&
            seed.accum == desc->accum && seed.depth_func == desc->depth_func &&
            seed.peel_test == desc->peel_test && seed.cull == desc->cull &&
-           seed.normals == desc->normals && seed.opaque_blend == desc->opaque_blend;
+           seed.normals == desc->normals && seed.ggx == desc->ggx &&
+           seed.back_light == desc->back_light && seed.opaque_blend == desc->opaque_blend;
 }
 
 const char *simd_name(SimdChoice simd)

@@ -43,6 +43,12 @@ typedef enum NormalMode {
     NORMALS_FACED = 0,
     NORMALS_KEPT
 } NormalMode;
+/* How the distribution's denominator is computed: as the source writes it, or without the
+ * cancellation of 1 − (N·H)² (frame/shading.h). */
+typedef enum GgxForm {
+    GGX_SOURCE = 0,
+    GGX_STABLE
+} GgxForm;
 /* under: destination alpha becomes 0 behind opaque; seed: glBlendFunc(DST_ALPHA, ONE) for all
  * four channels, so destination alpha becomes 2T and means nothing. RGB is the same. */
 typedef enum OpaqueBlend {
@@ -90,6 +96,8 @@ typedef struct RenderDesc {
     PeelTest peel_test;
     CullMode cull;
     NormalMode normals;
+    GgxForm ggx;
+    bool back_light; /* transparent surfaces reflect lights behind them (frame/shading.h) */
     OpaqueBlend opaque_blend;
     bool unfused; /* model a driver without fused multiply-add */
     RefPath ref_path;
@@ -112,7 +120,7 @@ typedef struct GBufferLayout {
 GBufferLayout gbuffer_layout(GBufferFormat format);
 
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,
- * raw peel test, its culling, normals and opaque blend. */
+ * raw peel test, its culling, normals, distribution, back light and opaque blend. */
 void render_desc_seed_profile(RenderDesc *desc);
 bool render_desc_is_seed(const RenderDesc *desc); /* whether all of these are set */
 

@@ -6,8 +6,8 @@
  * Cook-Torrance with GGX distribution, Schlick-GGX geometry term, Schlick's Fresnel. The clamps
  * are ours, so that no stored value is ever NaN.
  *
- * Everything is in view space; the eye is at 0. dot, max, clamp, inversesqrt, mix: GLSL's, as
- * number/op.h states them; `a·b·c` is (a·b)·c.
+ * Everything is in view space; the eye is at 0. dot, cross, max, clamp, inversesqrt, mix:
+ * GLSL's, as number/op.h states them; `a·b·c` is (a·b)·c.
  *
  * Geometry pass, per fragment, from smooth varyings p and n:
  *   N = n · inversesqrt(max(dot(n, n), SHADING_TINY));  faced: −N on a back face
@@ -39,6 +39,28 @@
  *     sum = sum + ((1 − F)·lambert + F·s) · (color·att·NL)
  *   c   = sum + ambient·diffuse·ao
  *   source = (c·alpha, alpha)
+ *
+ * With GGX_STABLE the distribution's denominator does not subtract (N·H)² from 1, which leaves few
+ * right digits near a highlight:
+ *     S   = cross(N, H);  S2 = dot(S, S)
+ *     den = max(NH·NH·a2 + S2, a2)
+ *   (cross's x is N.y·H.z − N.z·H.y.) For unit N and H and NH not clamped, S2 = 1 − NH², so in
+ * exact arithmetic den is the source's, NH²·am + 1, and never below a2: max only stops what
+ * rounding, or a guarded N or H shorter than 1, would make smaller, so that dist is finite. Where
+ * NH is clamped, N·V or N·L is not positive and GV·GL = 0: both forms give no lobe. An N whose
+ * stored length is 1 + e scales den by 1 + 2e, an error as small as e, where the source's form adds
+ * about 2e to a den that may be as small as a2. ref/truth computes the source's form: in double the
+ * cancellation does not matter. Measured on 20 000 highlights at roughness 0.045 to 0.3
+ * (tests/unit/test_shade.c), largest relative error of the lit colour: 6.7e-5, and 0.16 in the
+ * source's form.
+ *
+ * With back_light, in the lighting passes of peels only, a light behind the surface is mirrored to
+ * the side of N and adds its specular lobe, without the Lambert term:
+ *     u   = dot(N, L);  m = max(−u, 0);  L = L + 2·m·N      before h
+ *     NL  = max(u, m)                                       |u|, in place of max(dot(N, L), 0)
+ *     where u < 0, 0 stands for lambert
+ *   A light in front has m = 0 and the same bits as without. N is the stored one: where it is
+ *   turned from the viewer (NORMALS_KEPT), NV = 0 and there is no lobe, as without.
  *
  * Under-blend into the accumulation buffer, cleared to (0, 0, 0, 1):
  *   rgb = source.rgb·dst.a + dst.rgb;  a = source.a·0 + dst.a·(1 − source.a)

@@ -113,6 +113,29 @@ static inline Lanes lanes_dot3(const Lanes a[3], const Lanes b[3])
     return lanes_add(lanes_add(lanes_mul(a[2], b[2]), lanes_mul(a[1], b[1])),
                      lanes_mul(a[0], b[0]));
 }
+/* GLSL's cross. */
+static inline void lanes_cross(const Lanes a[3], const Lanes b[3], Lanes out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = lanes_sub(lanes_mul(a[j], b[k]), lanes_mul(a[k], b[j]));
+    }
+}
+/* Per lane a < b ? x : y, false where either is NaN. a and b are results of operations above, and
+ * so not denormal. */
+static inline Lanes lanes_where_less(Lanes a, Lanes b, Lanes x, Lanes y)
+{
+#if LANES == 1
+    return a < b ? x : y;
+#elif LANES == 4
+    Lanes less = _mm_cmplt_ps(a, b);
+    return _mm_or_ps(_mm_and_ps(less, x), _mm_andnot_ps(less, y));
+#elif LANES == 8
+    return _mm256_blendv_ps(y, x, _mm256_cmp_ps(a, b, _CMP_LT_OQ));
+#else
+    return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(a, b, _CMP_LT_OQ), y, x);
+#endif
+}
 static inline Lanes lanes_mix(Lanes a, Lanes b, Lanes t)
 {
     return lanes_add(lanes_mul(a, lanes_sub(lanes_all(1.0f), t)), lanes_mul(b, t));

@@ -148,6 +148,8 @@ int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS
     SETTING("Peel test", "%s", desc->peel_test == PEEL_TEST_RAW ? "raw" : "stored");
     SETTING("Culling", "%s", culls[desc->cull]);
     SETTING("Normals", "%s", desc->normals == NORMALS_KEPT ? "kept" : "faced");
+    SETTING("Shading", "GGX, %s form%s", desc->ggx == GGX_STABLE ? "stable" : "source",
+            desc->back_light ? ", back light" : "");
     SETTING("Arithmetic", "%s",
             report->frames[RENDERER_REF].fused ? "fused multiply-add" : "separate multiply, add");
     SETTING("Tolerance", "%g", report->tolerance);

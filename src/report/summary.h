@@ -10,7 +10,7 @@
 enum {
     SUMMARY_NUMBER = 40,
     SUMMARY_LINE = 320,
-    SUMMARY_SETTINGS = 16
+    SUMMARY_SETTINGS = 20
 };
 
 /* One row of a pair's buffer table: one buffer, or a run of buffers that are all equal. */

@@ -80,6 +80,7 @@ for choice in '--depth d24' '--depth d16' '--accum rgba16f' '--accum rgba16' '--
     '--gbuffer seed' '--peel-test raw' '--depth-func lequal' \
     '--depth-range zero-one' '--depth-range reversed' '--depth-range reversed --depth d24' \
     '--cull none' '--cull seed' '--normals kept' '--profile seed --accum rgba8' \
+    '--ggx stable' '--back-light on' '--profile seed --ggx stable --back-light on --fma off' \
     '--fma off --depth d16 --accum rgba16f'; do
     # shellcheck disable=SC2086 # words
     exits 0 "compare $choice" "$peel" compare tutorial --size 64x36 --tolerance 1 $choice

@@ -66,6 +66,14 @@ static float do_dot3(const float *x, const float *y)
 {
     return op_dot3(x, y);
 }
+static float do_cross(const float *x, const float *y)
+{
+    return op_sub(op_mul(x[1], y[2]), op_mul(x[2], y[1]));
+}
+static float do_where_less(const float *x, const float *y)
+{
+    return *x < *y ? 1.0f : *y;
+}
 static float do_exp2(const float *x, const float *y)
 {
     (void)y;
@@ -96,6 +104,8 @@ static const Operation operations[] = {
     {"clamp", "precise vec4 r = clamp(a, 0.0, 1.0); result = r;", do_saturate, 4},
     {"mix", "precise vec4 r = mix(a, b, 0.3); result = r;", do_mix, 4},
     {"dot", "precise float r = dot(a.xyz, b.xyz); result = vec4(r);", do_dot3, 1},
+    {"cross", "precise vec3 r = cross(a.xyz, b.xyz); result = r.xxxx;", do_cross, 1},
+    {"?:", "precise float r = a.x < b.x ? 1.0 : b.x; result = vec4(r);", do_where_less, 1},
     {"exp2", "precise vec4 r = exp2(a); result = r;", do_exp2, 4},
     {"log2", "precise vec4 r = log2(a); result = r;", do_log2, 4},
     {"pow", "precise vec4 r = pow(a, b); result = r;", do_pow, 4},

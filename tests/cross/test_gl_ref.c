@@ -78,6 +78,10 @@ static const RenderDesc variants[] = {
     {.peel_test = PEEL_TEST_RAW, .cull = CULL_SEED},
     {.peel_test = PEEL_TEST_RAW, .depth = FORMAT_D24, .cull = CULL_NONE},
     {.normals = NORMALS_KEPT, .depth_func = DEPTH_LEQUAL, .passes = 3, .lights = -1},
+    {.ggx = GGX_STABLE},
+    {.back_light = true, .cull = CULL_NONE},
+    {.ggx = GGX_STABLE, .back_light = true, .normals = NORMALS_KEPT, .accum = FORMAT_RGBA16F},
+    {.ggx = GGX_STABLE, .back_light = true, .gbuffer = GBUFFER_SEED, .accum = FORMAT_RGBA8},
 };
 
 START_TEST(test_soup)

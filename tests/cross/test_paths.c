@@ -41,6 +41,8 @@ static RenderDesc random_desc(Random *random)
         desc.peel_test = (PeelTest)(random_bits(random) % 2);
         desc.cull = (CullMode)(random_bits(random) % 3);
         desc.normals = (NormalMode)(random_bits(random) % 2);
+        desc.ggx = (GgxForm)(random_bits(random) % 2);
+        desc.back_light = random_bits(random) % 2;
         desc.opaque_blend = (OpaqueBlend)(random_bits(random) % 2);
         desc.unfused = random_bits(random) % 4 == 0;
     }

@@ -97,6 +97,52 @@ START_TEST(test_scenes)
 }
 END_TEST
 
+/* The distribution's other form, light from behind, and both. */
+START_TEST(test_shading_options)
+{
+    static const char *const names[] = {"teapot_hall", "tutorial", "chain"};
+    Scene scene = generate(names[_i % 3]);
+    for (int options = 1; options < 4; options++) {
+        RenderDesc desc = {.width = WIDTH, .height = HEIGHT, .lights = 16};
+        if (_i / 3)
+            render_desc_seed_profile(&desc);
+        desc.ggx = options & 1 ? GGX_STABLE : GGX_SOURCE;
+        desc.back_light = options & 2;
+        Threeway report = run(&scene, &desc, honest);
+        check_ref_gl(&report);
+        ck_assert_uint_eq(report.pairs[1].final.nonfinite, 0);
+        if (_i < 3)
+            ck_assert_msg(report.agree, "%s: p99 %g", scene.name,
+                          report.pairs[1].unaffected.p99_rel);
+        threeway_free(&report);
+    }
+    scene_free(&scene);
+}
+END_TEST
+
+/* Back light changes transparent surfaces, in every renderer, and opaque ones in none. */
+START_TEST(test_back_light)
+{
+    Scene scene = generate("tutorial");
+    for (int opaque = 0; opaque < 2; opaque++) {
+        if (opaque)
+            scene_override_opacity(&scene, 1.0f);
+        for (int i = 0; i < RENDERER_COUNT; i++) {
+            RenderDesc desc = {.width = WIDTH, .height = HEIGHT};
+            Frame off, on;
+            ck_assert(honest[i](&scene, &desc, NULL, &off) == RESULT_OK);
+            desc.back_light = true;
+            ck_assert(honest[i](&scene, &desc, NULL, &on) == RESULT_OK);
+            size_t bytes = (size_t)WIDTH * HEIGHT * format_pixel_bytes(on.final.format);
+            ck_assert_int_eq(memcmp(off.final.pixels, on.final.pixels, bytes) == 0, opaque);
+            frame_free(&off);
+            frame_free(&on);
+        }
+    }
+    scene_free(&scene);
+}
+END_TEST
+
 /* What the limit loses is counted, and the peels that are made still agree. */
 START_TEST(test_pass_limit)
 {
@@ -401,6 +447,8 @@ int main(void)
     TCase *tcase = tcase_create("threeway");
     tcase_set_timeout(tcase, 300);
     tcase_add_loop_test(tcase, test_scenes, 0, 2 * (int)(sizeof cases / sizeof cases[0]));
+    tcase_add_loop_test(tcase, test_shading_options, 0, 6);
+    tcase_add_test(tcase, test_back_light);
     tcase_add_test(tcase, test_pass_limit);
     tcase_add_test(tcase, test_nothing_transparent);
     tcase_add_test(tcase, test_empty_view);

@@ -249,7 +249,7 @@ START_TEST(test_shading_place)
         double x = (i % 96 + 0.5) / 48 - 1, y = 1 - (i / 96 + 0.5) / 48;
         double depth = 2 / (1 + y / 4); /* of the plane along the ray (x, y, −1) */
         Surface surface = {
-            {x * depth, y * depth, -depth}, {x * depth, y * depth, 4}, &stage->materials[0]};
+            {x * depth, y * depth, -depth}, {x * depth, y * depth, 4}, &stage->materials[0], false};
         double rgb[3];
         radiance_shade(&view, &surface, rgb);
         const float *final = image_pixel(&frame.final, i % 96, i / 96);

@@ -24,7 +24,7 @@ START_TEST(test_head_on)
         ViewLight light = {{0, 0, (float)(distance - 3)}, {1, 2, 4}, {1, 0.5f, 0.25f}};
         View view = {.light_count = 1, .lights = &light, .ambient = {0.25f, 0.25f, 0.5f}};
         Material m = material(roughness, metallic);
-        Surface surface = {{0, 0, -3}, {0, 0, 7}, &m};
+        Surface surface = {{0, 0, -3}, {0, 0, 7}, &m, false};
         double rgb[3], a2 = pow(roughness, 4);
         radiance_shade(&view, &surface, rgb);
         double attenuation = 1 / (1 + 0.5 * distance + 0.25 * distance * distance);
@@ -48,7 +48,7 @@ START_TEST(test_bisecting_normal)
     ViewLight light = {{5, 0, -3}, {2, 2, 2}, {0, 0, 1}};
     View view = {.light_count = 1, .lights = &light};
     Material m = material(0.5f, 0);
-    Surface surface = {{0, 0, -3}, {1, 0, 1}, &m};
+    Surface surface = {{0, 0, -3}, {1, 0, 1}, &m, false};
     double rgb[3], c = sqrt(0.5), k = 1.5 * 1.5 / 8, g = c / (c * (1 - k) + k);
     radiance_shade(&view, &surface, rgb);
     for (int i = 0; i < 3; i++) {
@@ -65,7 +65,7 @@ START_TEST(test_unlit)
 {
     ViewLight behind = {{0, 0, -9}, {100, 100, 100}, {1, 0, 0}};
     Material m = material(0.5f, 0);
-    Surface surface = {{0, 0, -3}, {0, 0, 1}, &m};
+    Surface surface = {{0, 0, -3}, {0, 0, 1}, &m, false};
     for (size_t count = 0; count < 2; count++) {
         View view = {.light_count = count, .lights = &behind, .ambient = {1, 1, 2}};
         double rgb[3];
@@ -77,6 +77,42 @@ START_TEST(test_unlit)
 }
 END_TEST
 
+/* A light behind a back-lit surface gives what its mirror image gives, without the Lambert term;
+ * one in front the same as ever. */
+START_TEST(test_back_light)
+{
+    ViewLight behind = {{1.5f, 0.5f, -4.0f}, {1, 2, 4}, {0.5f, 0.25f, 1}}, front = behind;
+    front.position[2] = -2.0f; /* mirrored at z = −3 */
+    View view_behind = {.light_count = 1, .lights = &behind},
+         view_front = {.light_count = 1, .lights = &front};
+    Material m = material(0.4f, 1), rough = material(0.4f, 0);
+    Surface surface = {{0, 0, -3}, {0, 0, 1}, &m, true};
+    double back[3], ahead[3], without[3];
+    radiance_shade(&view_behind, &surface, back);
+    radiance_shade(&view_front, &surface, ahead);
+    for (int k = 0; k < 3; k++) { /* a metal has no Lambert term */
+        ck_assert_double_gt(back[k], 0.0);
+        ck_assert_double_eq_tol(back[k], ahead[k], 1e-15);
+    }
+    surface.back_light = false;
+    radiance_shade(&view_front, &surface, without);
+    ck_assert_mem_eq(without, ahead, sizeof ahead);
+    radiance_shade(&view_behind, &surface, without);
+    ck_assert_double_eq(without[0], 0.0);
+    surface = (Surface){{0, 0, -3}, {0, 0, 1}, &rough, true};
+    radiance_shade(&view_behind, &surface, back);
+    radiance_shade(&view_front, &surface, ahead);
+    const double L[3] = {1.5 / sqrt(3.5), 0.5 / sqrt(3.5), 1 / sqrt(3.5)};
+    double HV = sqrt((1 + L[2]) / 2), f = 0.04f + (1 - (double)0.04f) * pow(1 - HV, 5);
+    double attenuation = 1 / (0.5 + 0.25 * sqrt(3.5) + 3.5);
+    for (int k = 0; k < 3; k++) {
+        double lambert = (1 - f) * rough.base_color[k] / pi * behind.color[k] * attenuation * L[2];
+        ck_assert_double_gt(back[k], 0.0);
+        ck_assert_double_eq_tol(ahead[k] - back[k], lambert, 1e-15);
+    }
+}
+END_TEST
+
 /* The guards: no normal, a light on the surface, a surface at the eye, roughness 0. */
 START_TEST(test_guards)
 {
@@ -84,7 +120,7 @@ START_TEST(test_guards)
         ViewLight light = {{0, 0, i & 1 ? -3 : 0}, {1, 1, 1}, {0, 0, 1}};
         View view = {.light_count = 1, .lights = &light};
         Material m = material(i & 2 ? 0.0f : 1.0f, 0);
-        Surface surface = {{0, 0, i & 4 ? 0 : -3}, {0, 0, i & 8 ? 0 : 1}, &m};
+        Surface surface = {{0, 0, i & 4 ? 0 : -3}, {0, 0, i & 8 ? 0 : 1}, &m, false};
         double rgb[3];
         radiance_shade(&view, &surface, rgb);
         for (int k = 0; k < 3; k++)
@@ -94,7 +130,8 @@ START_TEST(test_guards)
     ViewLight light = {{1, 0, 0}, {1, 1, 1}, {0, 0, 1}};
     View view = {.light_count = 1, .lights = &light};
     Material smooth = material(0, 0), least = material(SHADING_ROUGHNESS_MIN, 0);
-    Surface a = {{0, 0, -3}, {0.1, 0, 1}, &smooth}, b = {{0, 0, -3}, {0.1, 0, 1}, &least};
+    Surface a = {{0, 0, -3}, {0.1, 0, 1}, &smooth, false},
+            b = {{0, 0, -3}, {0.1, 0, 1}, &least, false};
     double rgb_a[3], rgb_b[3];
     radiance_shade(&view, &a, rgb_a);
     radiance_shade(&view, &b, rgb_b);
@@ -121,6 +158,7 @@ int main(void)
     tcase_add_test(tests, test_head_on);
     tcase_add_test(tests, test_bisecting_normal);
     tcase_add_test(tests, test_unlit);
+    tcase_add_test(tests, test_back_light);
     tcase_add_test(tests, test_guards);
     tcase_add_test(tests, test_display);
     suite_add_tcase(suite, tests);

@@ -134,6 +134,7 @@ static void lighting_tile(Peel *state, uint32_t tile)
     bool opaque = state->peel < 0;
     const GBuffer *source = opaque ? &state->opaque : &state->layer;
     bool seed = opaque && pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
+    ShadeForm form = pass_shade_form(pass, !opaque);
     PixelRect rect = pass_tile_rect(pass, tile);
     for (int y = rect.y0; y <= rect.y1; y++)
         for (int x = rect.x0; x <= rect.x1; x++) {
@@ -141,7 +142,7 @@ static void lighting_tile(Peel *state, uint32_t tile)
             Texel texel;
             float color[4];
             gbuffer_load(source, x, row, &texel);
-            if (!shade_pixel(&pass->view, &texel, color))
+            if (!shade_pixel(&pass->view, &form, &texel, color))
                 continue;
             void *pixel = image_pixel(&state->accum, x, row);
             if (seed)
