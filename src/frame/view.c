@@ -154,16 +154,16 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
     out->depth_range = desc->depth_range;
     Matrix projection = make_projection(camera, desc);
     matrix_round(&projection, out->projection);
-    for (int i = 0; i < 4; i++) {
-        static const int used[4] = {0, 5, 10, 14};
-        /* Reversed, the depth of infinity is 0. */
-        if (!isnormal(out->projection[used[i]]) && !(used[i] == 10 && out->projection[10] == 0.0f))
-            return result_fail(RESULT_BAD_INPUT,
-                               "camera %d: its projection (yfov %g, near %g, far %g) does not fit "
-                               "in single precision",
-                               desc->camera, camera->yfov, camera->near, camera->far);
-    }
-
+    /* Reversed, the depth of infinity is 0. A near plane below 2^-126 would let clipped vertices
+     * have w = 0. */
+    bool fits = isnormal((float)camera->near) && isnormal(out->projection[0]) &&
+                isnormal(out->projection[5]) && isnormal(out->projection[14]) &&
+                (isnormal(out->projection[10]) || out->projection[10] == 0.0f);
+    if (!fits)
+        return result_fail(RESULT_BAD_INPUT,
+                           "camera %d: its projection (yfov %g, near %g, far %g) does not fit in "
+                           "single precision",
+                           desc->camera, camera->yfov, camera->near, camera->far);
     out->draws = memory_array(scene->instance_count, sizeof *out->draws);
     out->lights = memory_array(scene->light_count, sizeof *out->lights);
     if (!out->draws || !out->lights) {

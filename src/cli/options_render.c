@@ -1,0 +1,324 @@
+/* The rendering options, which all commands that render share. */
+#include "cli/options.h"
+
+#include "frame/method.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static error_t parse_size(const char *text, RenderDesc *desc)
+{
+    char *end;
+    bool digits = strspn(text, "0123456789x") == strlen(text);
+    long width = strtol(text, &end, 10);
+    long height = *end == 'x' ? strtol(end + 1, &end, 10) : 0;
+    if (!digits || *end || width < 1 || height < 1 || width > SIZE_MAX_PIXELS ||
+        height > SIZE_MAX_PIXELS)
+        return options_error("--size %s: expected WxH, each from 1 to %d", text, SIZE_MAX_PIXELS);
+    desc->width = (int)width;
+    desc->height = (int)height;
+    return 0;
+}
+
+static error_t parse_background(const char *text, RenderOptions *options)
+{
+    int length = 0;
+    double *c = options->background;
+    if (sscanf(text, "%lf,%lf,%lf%n", &c[0], &c[1], &c[2], &length) != 3 || text[length])
+        return options_error("--background %s: expected R,G,B, linear, from 0 to 1e6", text);
+    for (int i = 0; i < 3; i++)
+        if (!(c[i] >= 0.0 && c[i] <= 1e6))
+            return options_error("--background %s: expected R,G,B, linear, from 0 to 1e6", text);
+    options->has_background = true;
+    return 0;
+}
+
+static error_t parse_memory(const char *text, RenderDesc *desc)
+{
+    char *end;
+    errno = 0;
+    unsigned long long bytes = strtoull(text, &end, 10);
+    int shift = *end == 'K' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
+    if (errno || end == text || *text == '-' || bytes == 0 || end[shift != 0] ||
+        bytes > (SIZE_MAX >> shift))
+        return options_error("--max-memory %s: expected bytes, or a number with K, M or G", text);
+    desc->max_memory = (size_t)bytes << shift;
+    return 0;
+}
+
+static error_t parse_count(const char *name, const char *text, int low, int high, int *out)
+{
+    long long value;
+    if (!options_integer(text, low, high, &value))
+        return options_error("%s %s: expected a whole number from %d to %d", name, text, low, high);
+    *out = (int)value;
+    return 0;
+}
+
+static error_t parse_real(const char *name, const char *text, double low, double high, double *out)
+{
+    if (!options_real(text, low, high, out))
+        return options_error("%s %s: expected a number from %g to %g", name, text, low, high);
+    return 0;
+}
+
+/* ---- the options ---- */
+
+enum {
+    KEY_SIZE = 0x100,
+    KEY_CAMERA,
+    KEY_LIGHTS,
+    KEY_TIME,
+    KEY_OPACITY,
+    KEY_BACKGROUND,
+    KEY_METHOD,
+    KEY_PASSES,
+    KEY_PROFILE,
+    KEY_CULL,
+    KEY_NORMALS,
+    KEY_GGX,
+    KEY_BACK_LIGHT,
+    KEY_DEPTH_FUNC,
+    KEY_DEPTH_RANGE,
+    KEY_PEEL_TEST,
+    KEY_DEPTH,
+    KEY_ACCUM,
+    KEY_GBUFFER,
+    KEY_FMA,
+    KEY_SIMD,
+    KEY_THREADS,
+    KEY_MEMORY,
+};
+
+static const struct argp_option render_options[] = {
+    {0, 0, 0, 0, "Rendering:", 1},
+    {"size", KEY_SIZE, "WxH", 0, "Image size in pixels (default 1280x720)", 1},
+    {"camera", KEY_CAMERA, "NAME|INDEX", 0, "Camera of the scene (default the first)", 1},
+    {"lights", KEY_LIGHTS, "N", 0, "The scene's first N lights (default all)", 1},
+    {"time", KEY_TIME, "SECONDS", 0, "Turns the lights (default 0)", 1},
+    {"opacity", KEY_OPACITY, "A", 0, "Opacity 0 to 1 of every material; below 1 all are peeled", 1},
+    {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)", 1},
+    {"method", KEY_METHOD, "NAME", 0, "Transparency method (default peel)", 1},
+    {"passes", KEY_PASSES, "N|auto", 0,
+     "At most N peels; auto (default) until a peel yields no fragment", 1},
+    {"profile", KEY_PROFILE, "NAME", 0,
+     "default, or seed: the number formats and choices of the original program", 1},
+    {"cull", KEY_CULL, "MODE", 0,
+     "Back faces left out: gltf (default: of single-sided materials), seed (of opaque ones), none",
+     1},
+    {"normals", KEY_NORMALS, "MODE", 0,
+     "On back faces: faced (default: turned to the viewer) or kept", 1},
+    {"ggx", KEY_GGX, "FORM", 0,
+     "Highlights' distribution: source (default: as the original computes it) or stable (without "
+     "its cancellation)",
+     1},
+    {"back-light", KEY_BACK_LIGHT, "on|off", 0,
+     "Transparent surfaces also reflect lights behind them (default off)", 1},
+    {"depth-func", KEY_DEPTH_FUNC, "FUNC", 0,
+     "less (default: of equal depths the first drawn stays) or lequal (the last)", 1},
+    {"depth-range", KEY_DEPTH_RANGE, "RANGE", 0,
+     "gl (default: clip space -w to w), zero-one (0 to w), reversed (0 to w, depth 1 near and 0 "
+     "far)",
+     1},
+    {"peel-test", KEY_PEEL_TEST, "TEST", 0,
+     "stored (default: depths are compared as stored) or raw (gl_FragCoord.z with a stored depth)",
+     1},
+    {"depth", KEY_DEPTH, "FORMAT", 0, "d32f (default), d24 or d16", 1},
+    {"accum", KEY_ACCUM, "FORMAT", 0, "rgba32f (default), rgba16f, rgba16 or rgba8", 1},
+    {"gbuffer", KEY_GBUFFER, "SET", 0,
+     "full (default: all 32-bit floats) or seed (the original's formats)", 1},
+    {"fma", KEY_FMA, "on|off", 0,
+     "Fused multiply-add in fixed-function arithmetic (default: as the GL driver does; without gl, "
+     "on)",
+     1},
+    {"simd", KEY_SIMD, "NAME", 0,
+     "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
+    {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
+    {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
+    {0},
+};
+
+static error_t parse_passes(const char *text, RenderDesc *desc)
+{
+    desc->passes = 0;
+    if (strcmp(text, "auto") == 0)
+        return 0;
+    long long passes;
+    if (!options_integer(text, 1, PASSES_MAX, &passes))
+        return options_error("--passes %s: expected auto or 1 to %d", text, PASSES_MAX);
+    desc->passes = (int)passes;
+    return 0;
+}
+
+/* "a", then "a, b", then "a, b or c": the i-th of count names. */
+static void append_name(char *list, size_t size, int i, int count, const char *name)
+{
+    size_t length = strlen(list);
+    const char *separator = i == 0 ? "" : i == count - 1 ? " or " : ", ";
+    snprintf(list + length, size - length, "%s%s", separator, name);
+}
+
+/* The index of text among the names, which are listed in the message when it is none of them. */
+static error_t parse_choice(const char *option, const char *text, const char *const names[],
+                            int count, int *out)
+{
+    char expected[128] = "";
+    for (int i = 0; i < count; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            *out = i;
+            return 0;
+        }
+        append_name(expected, sizeof expected, i, count, names[i]);
+    }
+    return options_error("%s %s: expected %s", option, text, expected);
+}
+
+static error_t parse_method(const char *text, RenderDesc *desc)
+{
+    const MethodInfo *method = method_find(text);
+    if (method) {
+        desc->method = method->id;
+        return 0;
+    }
+    char expected[256] = "";
+    for (int i = 0; i < METHOD_COUNT; i++)
+        append_name(expected, sizeof expected, i, METHOD_COUNT, method_info((MethodId)i)->name);
+    return options_error("--method %s: expected %s", text, expected);
+}
+
+static error_t parse_lights(const char *text, RenderDesc *desc)
+{
+    error_t error = parse_count("--lights", text, 0, 1 << 20, &desc->lights);
+    if (desc->lights == 0)
+        desc->lights = -1; /* none: 0 means all in a RenderDesc */
+    return error;
+}
+
+/* Options that choose one of a few names. */
+static error_t parse_named(int key, const char *argument, RenderOptions *options)
+{
+    static const char *const profiles[] = {"default", "seed"};
+    static const char *const switches[] = {"on", "off"};
+    static const char *const culls[] = {"gltf", "seed", "none"};
+    static const char *const normals[] = {"faced", "kept"};
+    static const char *const forms[] = {"source", "stable"};
+    static const char *const functions[] = {"less", "lequal"};
+    static const char *const ranges[] = {"gl", "zero-one", "reversed"};
+    static const char *const tests[] = {"stored", "raw"};
+    static const char *const gbuffers[] = {"full", "seed"};
+    static const PixelFormat depth_formats[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
+    static const char *const depths[] = {"d32f", "d24", "d16"};
+    static const PixelFormat accum_formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
+                                                FORMAT_RGBA8};
+    static const char *const accums[] = {"rgba32f", "rgba16f", "rgba16", "rgba8"};
+    const char *simds[SIMD_COUNT];
+    for (int i = 0; i < SIMD_COUNT; i++)
+        simds[i] = simd_name((SimdChoice)i);
+    int choice = 0;
+    error_t error = 0;
+    switch (key) {
+    case KEY_PROFILE:
+        error = parse_choice("--profile", argument, profiles, 2, &choice);
+        options->seed_profile = choice == 1;
+        break;
+    case KEY_FMA:
+        error = parse_choice("--fma", argument, switches, 2, &choice);
+        options->fma = choice == 0 ? FMA_ON : FMA_OFF;
+        break;
+    case KEY_CULL:
+        error = parse_choice("--cull", argument, culls, 3, &choice);
+        options->cull = choice;
+        break;
+    case KEY_NORMALS:
+        error = parse_choice("--normals", argument, normals, 2, &choice);
+        options->normals = choice;
+        break;
+    case KEY_GGX:
+        error = parse_choice("--ggx", argument, forms, 2, &choice);
+        options->ggx = choice;
+        break;
+    case KEY_BACK_LIGHT:
+        error = parse_choice("--back-light", argument, switches, 2, &choice);
+        options->back_light = choice == 0;
+        break;
+    case KEY_DEPTH_FUNC:
+        error = parse_choice("--depth-func", argument, functions, 2, &choice);
+        options->depth_func = choice;
+        break;
+    case KEY_DEPTH_RANGE:
+        error = parse_choice("--depth-range", argument, ranges, 3, &choice);
+        options->desc.depth_range = (DepthRange)choice;
+        break;
+    case KEY_PEEL_TEST:
+        error = parse_choice("--peel-test", argument, tests, 2, &choice);
+        options->peel_test = choice;
+        break;
+    case KEY_GBUFFER:
+        error = parse_choice("--gbuffer", argument, gbuffers, 2, &choice);
+        options->gbuffer = choice;
+        break;
+    case KEY_DEPTH:
+        error = parse_choice("--depth", argument, depths, 3, &choice);
+        options->depth = (int)depth_formats[choice];
+        break;
+    case KEY_ACCUM:
+        error = parse_choice("--accum", argument, accums, 4, &choice);
+        options->accum = (int)accum_formats[choice];
+        break;
+    case KEY_SIMD:
+        error = parse_choice("--simd", argument, simds, SIMD_COUNT, &choice);
+        options->desc.simd = (SimdChoice)choice;
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return error;
+}
+
+static error_t parse_render(int key, char *argument, struct argp_state *state)
+{
+    RenderOptions *options = state->input;
+    RenderDesc *desc = &options->desc;
+    switch (key) {
+    case KEY_SIZE:
+        return parse_size(argument, desc);
+    case KEY_CAMERA:
+        options->camera = argument;
+        return 0;
+    case KEY_LIGHTS:
+        return parse_lights(argument, desc);
+    case KEY_TIME:
+        return parse_real("--time", argument, -1e6, 1e6, &desc->time);
+    case KEY_OPACITY:
+        options->has_opacity = true;
+        return parse_real("--opacity", argument, 0.0, 1.0, &options->opacity);
+    case KEY_BACKGROUND:
+        return parse_background(argument, options);
+    case KEY_METHOD:
+        return parse_method(argument, desc);
+    case KEY_PASSES:
+        return parse_passes(argument, desc);
+    case KEY_THREADS:
+        return parse_count("--threads", argument, 1, 256, &desc->threads);
+    case KEY_MEMORY:
+        return parse_memory(argument, desc);
+    case ARGP_KEY_ARG:
+        if (options->scene_path)
+            return options_error("'%s': expected one scene, already given as '%s'", argument,
+                                 options->scene_path);
+        options->scene_path = argument;
+        return 0;
+    case ARGP_KEY_SUCCESS:
+        if (!options->scene_path)
+            return options_error("no scene given; expected a .gltf or .glb file or the name of a "
+                                 "built-in scene");
+        return 0;
+    default:
+        return parse_named(key, argument, options);
+    }
+}
+
+const struct argp options_render_argp = {render_options, parse_render, NULL, NULL,
+                                         NULL,           NULL,         NULL};
