@@ -21,62 +21,34 @@ static void seed32f(const float source[4], float dst[4])
         dst[i] = op_canonical(op_add(op_mul(source[i], transmittance), dst[i]));
 }
 
-/* Source and destination are 16-bit integers, and so is the arithmetic. Not a correctly rounded
- * a·b/65535: see NUMBERS.md. */
-static uint32_t multiply16(uint32_t a, uint32_t b)
+/* a·b/(2^bits − 1) as the driver rounds it: not always correctly, see NUMBERS.md. bits ≤ 16. */
+static uint32_t multiply(int bits, uint32_t a, uint32_t b)
 {
     uint32_t product = a * b;
-    product += product >> 16;
-    return (product + 32768u) >> 16;
+    product += product >> bits;
+    return (product + (1u << (bits - 1))) >> bits;
 }
 
-static uint16_t add_product16(uint32_t a, uint32_t b, uint32_t c)
+/* RGBA8 and RGBA16: the source is stored first, then the arithmetic is that of integers.
+ * transmits: alpha is T·(1 − s), as in the under-blend; else it is blended as the colours are. */
+static void unorm_blend(PixelFormat format, bool transmits, const float source[4], void *pixel)
 {
-    uint32_t sum = multiply16(a, b) + c;
-    return (uint16_t)(sum < 65535u ? sum : 65535u);
-}
-
-static void under16(const float source[4], uint16_t dst[4])
-{
-    uint32_t transmittance = dst[3];
-    for (int i = 0; i < 3; i++)
-        dst[i] = add_product16(unorm16_from_float(source[i]), transmittance, dst[i]);
-    dst[3] = (uint16_t)multiply16(transmittance, 65535u - unorm16_from_float(source[3]));
-}
-
-static void seed16(const float source[4], uint16_t dst[4])
-{
-    uint32_t transmittance = dst[3];
-    for (int i = 0; i < 4; i++)
-        dst[i] = add_product16(unorm16_from_float(source[i]), transmittance, dst[i]);
-}
-
-static uint32_t multiply8(uint32_t a, uint32_t b)
-{
-    uint32_t product = a * b;
-    product += product >> 8;
-    return (product + 128u) >> 8;
-}
-
-static uint8_t add_product8(uint32_t a, uint32_t b, uint32_t c)
-{
-    uint32_t sum = multiply8(a, b) + c;
-    return (uint8_t)(sum < 255u ? sum : 255u);
-}
-
-static void under8(const float source[4], uint8_t dst[4])
-{
-    uint32_t transmittance = dst[3];
-    for (int i = 0; i < 3; i++)
-        dst[i] = add_product8(unorm8_from_float(source[i]), transmittance, dst[i]);
-    dst[3] = (uint8_t)multiply8(transmittance, 255u - unorm8_from_float(source[3]));
-}
-
-static void seed8(const float source[4], uint8_t dst[4])
-{
-    uint32_t transmittance = dst[3];
-    for (int i = 0; i < 4; i++)
-        dst[i] = add_product8(unorm8_from_float(source[i]), transmittance, dst[i]);
+    const FormatInfo *info = format_info(format);
+    int bits = 8 * info->channel_bytes;
+    uint32_t transmittance = format_bits(format, pixel, 3);
+    unsigned char stored[4 * sizeof(uint16_t)];
+    format_store(format, source, stored);
+    for (int i = 0; i < 4; i++) {
+        uint32_t s = format_bits(format, stored, i);
+        uint32_t sum = multiply(bits, s, transmittance) + format_bits(format, pixel, i);
+        uint32_t value = sum < info->unorm_max ? sum : info->unorm_max;
+        if (i == 3 && transmits)
+            value = multiply(bits, transmittance, info->unorm_max - s);
+        if (bits == 8)
+            ((uint8_t *)pixel)[i] = (uint8_t)value;
+        else
+            ((uint16_t *)pixel)[i] = (uint16_t)value;
+    }
 }
 
 /* Half floats are blended as floats and truncated, and there the driver keeps denormals. */
@@ -121,10 +93,8 @@ void blend_under(PixelFormat format, const float source[4], void *pixel)
         half_blend(under16f, source, pixel);
         return;
     case FORMAT_RGBA16:
-        under16(source, pixel);
-        return;
     case FORMAT_RGBA8:
-        under8(source, pixel);
+        unorm_blend(format, true, source, pixel);
         return;
     default:
         assert(!"not an accumulation format");
@@ -141,10 +111,8 @@ void blend_opaque_seed(PixelFormat format, const float source[4], void *pixel)
         half_blend(seed16f, source, pixel);
         return;
     case FORMAT_RGBA16:
-        seed16(source, pixel);
-        return;
     case FORMAT_RGBA8:
-        seed8(source, pixel);
+        unorm_blend(format, false, source, pixel);
         return;
     default:
         assert(!"not an accumulation format");
