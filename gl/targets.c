@@ -15,7 +15,7 @@ static const GLenum internal_formats[FORMAT_COUNT] = {
 
 static void choose_formats(const RenderDesc *desc, Targets *out)
 {
-    GBufferLayout layout = gbuffer_layout(desc->gbuffer);
+    GBufferLayout layout = render_desc_layout(desc);
     out->depth_format = render_desc_depth(desc);
     out->accum_format = desc->accum;
     out->color_format[GBUFFER_NORMAL] = layout.normal;

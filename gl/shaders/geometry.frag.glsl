@@ -102,5 +102,5 @@ void main()
     out_normal = vec4(normal, 0.0);
     out_position = vec4(v_position, 1.0);
     out_diffuse = base_color;
-    out_material = vec4(material, 0.0);
+    out_material = vec4(material, 1.0);
 }

@@ -1,29 +1,25 @@
 #include "ref/pipeline/buffers.h"
 
-Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth,
-                      DepthRange range, GBuffer *out)
+Result gbuffer_create(const RenderDesc *desc, GBuffer *out)
 {
-    GBufferLayout layout = gbuffer_layout(format);
+    GBufferLayout layout = render_desc_layout(desc);
     *out = (GBuffer){0};
     struct {
         Image *image;
         PixelFormat format;
     } images[] = {
-        {&out->depth, depth},
-        {&out->normal, layout.normal},
-        {&out->position, layout.position},
-        {&out->diffuse, layout.diffuse},
-        {&out->material, layout.material},
-        {&out->primitive, FORMAT_R32UI},
+        {&out->depth, render_desc_depth(desc)}, {&out->normal, layout.normal},
+        {&out->position, layout.position},      {&out->diffuse, layout.diffuse},
+        {&out->material, layout.material},      {&out->primitive, FORMAT_R32UI},
     };
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
-        Result result = image_create(width, height, images[i].format, images[i].image);
+        Result result = image_create(desc->width, desc->height, images[i].format, images[i].image);
         if (result != RESULT_OK) {
             gbuffer_free(out);
             return result;
         }
     }
-    gbuffer_clear(out, range);
+    gbuffer_clear(out, desc->depth_range);
     return RESULT_OK;
 }
 

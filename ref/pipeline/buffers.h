@@ -19,8 +19,7 @@ typedef struct GBuffer {
 } GBuffer;
 
 /* Cleared. The caller frees with gbuffer_free. */
-Result gbuffer_create(int width, int height, GBufferFormat format, PixelFormat depth,
-                      DepthRange range, GBuffer *out);
+Result gbuffer_create(const RenderDesc *desc, GBuffer *out);
 void gbuffer_free(GBuffer *buffers);
 /* Colours to 0, depth to the far end, primitive to UINT32_MAX. */
 void gbuffer_clear(GBuffer *buffers, DepthRange range);

@@ -48,7 +48,7 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
     out->material[0] = material->roughness;
     out->material[1] = material->metallic;
     out->material[2] = material->occlusion;
-    out->material[3] = 0.0f;
+    out->material[3] = 1.0f;
 }
 
 #endif

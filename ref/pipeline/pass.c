@@ -85,7 +85,7 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
         .fused = !desc->unfused,
         .reversed = desc->depth_range == DEPTH_RANGE_REVERSED,
         .depth_format = render_desc_depth(desc),
-        .layout = gbuffer_layout(desc->gbuffer),
+        .layout = render_desc_layout(desc),
     };
     Result result = view_build(scene, desc, &out->view);
     if (result != RESULT_OK)

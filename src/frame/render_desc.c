@@ -3,6 +3,7 @@
 void render_desc_seed_profile(RenderDesc *desc)
 {
     desc->gbuffer = GBUFFER_SEED;
+    desc->position = POSITION_BUFFER;
     desc->depth = FORMAT_D24;
     desc->accum = FORMAT_RGBA16;
     desc->depth_func = DEPTH_LEQUAL;
@@ -18,10 +19,10 @@ bool render_desc_is_seed(const RenderDesc *desc)
 {
     RenderDesc seed = *desc;
     render_desc_seed_profile(&seed);
-    return seed.gbuffer == desc->gbuffer && seed.depth == desc->depth &&
-           seed.accum == desc->accum && seed.depth_func == desc->depth_func &&
-           seed.peel_test == desc->peel_test && seed.cull == desc->cull &&
-           seed.normals == desc->normals && seed.ggx == desc->ggx &&
+    return seed.gbuffer == desc->gbuffer && seed.position == desc->position &&
+           seed.depth == desc->depth && seed.accum == desc->accum &&
+           seed.depth_func == desc->depth_func && seed.peel_test == desc->peel_test &&
+           seed.cull == desc->cull && seed.normals == desc->normals && seed.ggx == desc->ggx &&
            seed.back_light == desc->back_light && seed.opaque_blend == desc->opaque_blend;
 }
 
@@ -31,9 +32,15 @@ const char *simd_name(SimdChoice simd)
     return names[simd];
 }
 
-GBufferLayout gbuffer_layout(GBufferFormat format)
+GBufferLayout render_desc_layout(const RenderDesc *desc)
 {
-    if (format == GBUFFER_SEED)
-        return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA8, FORMAT_RGBA8};
-    return (GBufferLayout){FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F};
+    static const GBufferLayout layouts[] = {
+        [GBUFFER_FULL] = {FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F, FORMAT_RGBA32F},
+        [GBUFFER_SEED] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA8, FORMAT_RGBA8},
+        [GBUFFER_COMPACT] = {FORMAT_RG16, FORMAT_NONE, FORMAT_RGBA8, FORMAT_RGBA8},
+    };
+    GBufferLayout layout = layouts[desc->gbuffer];
+    if (desc->position == POSITION_RECONSTRUCT)
+        layout.position = FORMAT_NONE;
+    return layout;
 }

@@ -14,8 +14,15 @@ typedef enum MethodId {
 } MethodId;
 typedef enum GBufferFormat {
     GBUFFER_FULL = 0,
-    GBUFFER_SEED
+    GBUFFER_SEED,   /* the original's */
+    GBUFFER_COMPACT /* octahedral normals, 8-bit material, no position */
 } GBufferFormat;
+/* Where the lighting pass has the position from: the G-buffer, or the stored depth. A compact
+ * G-buffer has none, whatever is asked for. */
+typedef enum PositionSource {
+    POSITION_BUFFER = 0,
+    POSITION_RECONSTRUCT
+} PositionSource;
 typedef enum DepthFunc {
     DEPTH_LESS = 0,
     DEPTH_LEQUAL
@@ -91,6 +98,7 @@ typedef struct RenderDesc {
     PixelFormat depth; /* FORMAT_D32F, D24 or D16; FORMAT_RGBA32F (zero) means the default D32F */
     PixelFormat accum; /* FORMAT_RGBA32F, RGBA16F, RGBA16 or RGBA8 */
     GBufferFormat gbuffer;
+    PositionSource position;
     DepthRange depth_range;
     DepthFunc depth_func; /* reversed: GREATER and GEQUAL */
     PeelTest peel_test;
@@ -112,12 +120,13 @@ static inline PixelFormat render_desc_depth(const RenderDesc *desc)
     return desc->depth == FORMAT_RGBA32F ? FORMAT_D32F : desc->depth;
 }
 
-/* Stored formats of the G-buffer's colour buffers. */
+/* Stored formats of the G-buffer's colour buffers; position is FORMAT_NONE where it is
+ * reconstructed, normal FORMAT_RG16 where it is octahedral. */
 typedef struct GBufferLayout {
     PixelFormat normal, position, diffuse, material;
 } GBufferLayout;
 
-GBufferLayout gbuffer_layout(GBufferFormat format);
+GBufferLayout render_desc_layout(const RenderDesc *desc);
 
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,
  * raw peel test, its culling, normals, distribution, back light and opaque blend. */

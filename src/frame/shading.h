@@ -9,13 +9,36 @@
  * Everything is in view space; the eye is at 0. dot, cross, max, clamp, inversesqrt, mix:
  * GLSL's, as number/op.h states them; `a·b·c` is (a·b)·c.
  *
- * Geometry pass, per fragment, from smooth varyings p and n:
+ * Geometry pass, per fragment, from smooth varyings p, n and uv:
  *   N = n · inversesqrt(max(dot(n, n), SHADING_TINY));  faced: −N on a back face
- *   stored: depth; normal (N, 0); position (p, 1); diffuse (base colour, alpha; alpha 1 unless
- *   BLEND); material (roughness, metallic, occlusion, 0). Cleared to 0; depth to 1.
+ *   base = base colour and alpha, · the sample of the base-colour texture where there is one;
+ *   roughness and metallic, · green and blue of the metallic-roughness texture where there is one.
+ *   MASK: discarded where base.a < cutoff.
+ *   stored: depth; normal (N, 0); position (p, 1); diffuse (base.rgb, base.a; alpha 1 unless
+ *   BLEND); material (roughness, metallic, occlusion, 1). Cleared to 0; depth to 1.
  *   A transparent fragment is discarded where its depth ≥ the opaque depth, and, from the second
  *   peel on, where its depth ≤ the previous peel's. With DEPTH_RANGE_REVERSED depth is cleared to 0
  *   and every comparison of depths is mirrored.
+ *
+ * A texture of w × h texels is sampled at uv = (u, v); u first, v alike with h:
+ *   c = u − floor(u)                                      WRAP_REPEAT
+ *   c = u                                                 WRAP_CLAMP
+ *   m = u − 2·floor(u·0.5);  c = m > 1 ? 2 − m : m        WRAP_MIRROR
+ *   x = clamp(c, 0, 1)·w  (bilinear: − 0.5);  i = floor(x);  f = x − i
+ *   texels i and i + 1; one outside is taken modulo w (WRAP_REPEAT) or clamped to the edge.
+ *   nearest: texel (i, j); bilinear: mix(mix(t00, t10, f), mix(t01, t11, f), g), f for u.
+ *   NaN gives c = 0. Each is the glTF sampler at level 0 (OpenGL 4.6, 8.14.2 and 8.14.3).
+ *
+ * Octahedral normals (GBUFFER_COMPACT; Cigolle et al., "A Survey of Efficient Representations for
+ * Independent Unit Vectors", JCGT 3(2), 2014), stored in two channels:
+ *   p = N.xy / max((|N.x| + |N.y|) + |N.z|, SHADING_TINY);  N.z < 0: p = (1 − |p.yx|)·s(p.xy)
+ *   stored: p·0.5 + 0.5, where s(a) is −1 for a < 0, else 1
+ *   decoded: p = stored·2 − 1;  z = (1 − |p.x|) − |p.y|;  z < 0: p as above
+ *            N = (p, z) · inversesqrt(max(dot of it with itself, SHADING_TINY))
+ * Position from the stored depth d as it is fetched, at integer pixel (x, y), y up, with the
+ * view's Unprojection:
+ *   t = max(d·depth_scale + depth_offset, inverse_far);  z = 1/t
+ *   P = ((x·ray_scale.x + ray_offset.x)·z, (y·ray_scale.y + ray_offset.y)·z, −z)
  *
  * Lighting pass, per pixel, from the stored values P, N, diffuse, alpha, roughness, metallic, ao;
  * discarded where alpha ≤ SHADING_ALPHA_TEST:

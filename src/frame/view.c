@@ -141,6 +141,24 @@ static Matrix make_projection(const Camera *camera, const RenderDesc *desc)
     return matrix_perspective(camera->yfov, aspect, camera->near, camera->far);
 }
 
+/* From the rounded matrix, so that it undoes what the vertices went through. Infinity becomes 1e15,
+ * beyond which a scene has nothing. */
+static Unprojection make_unprojection(const View *view, const Camera *camera)
+{
+    const float *m = view->projection;
+    double a = m[10], b = m[14];
+    bool half = view->depth_range != DEPTH_RANGE_GL;
+    return (Unprojection){
+        .depth_scale = (float)((half ? 1.0 : 2.0) / b),
+        .depth_offset = (float)((half ? a : a - 1.0) / b),
+        .inverse_far = (float)(camera->far < 1e15 ? 1.0 / camera->far : 1e-15),
+        .ray_scale = {(float)(2.0 / (view->width * (double)m[0])),
+                      (float)(2.0 / (view->height * (double)m[5]))},
+        .ray_offset = {(float)((1.0 / view->width - 1.0) / (double)m[0]),
+                       (float)((1.0 / view->height - 1.0) / (double)m[5])},
+    };
+}
+
 Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
 {
     *out = (View){.width = desc->width, .height = desc->height};
@@ -164,6 +182,7 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
                            "camera %d: its projection (yfov %g, near %g, far %g) does not fit in "
                            "single precision",
                            desc->camera, camera->yfov, camera->near, camera->far);
+    out->unprojection = make_unprojection(out, camera);
     out->draws = memory_array(scene->instance_count, sizeof *out->draws);
     out->lights = memory_array(scene->light_count, sizeof *out->lights);
     if (!out->draws || !out->lights) {

@@ -26,10 +26,17 @@ typedef struct ViewLight {
     float attenuation[3];
 } ViewLight;
 
+/* Position from depth: see frame/shading.h. */
+typedef struct Unprojection {
+    float depth_scale, depth_offset, inverse_far;
+    float ray_scale[2], ray_offset[2];
+} Unprojection;
+
 typedef struct View {
     int width, height;
     DepthRange depth_range; /* which clip space projection leads to */
     float projection[16];
+    Unprojection unprojection;
     size_t draw_count;
     Draw *draws; /* invisible instances (masked away, alpha < 1e-4) left out */
     size_t light_count;

@@ -19,7 +19,7 @@ ExrLayout exr_layout(PixelFormat format)
 const char *exr_channel_name(PixelFormat format, int index)
 {
     static const char *const colors[] = {"R", "G", "B", "A"};
-    if (format_info(format)->channels == 4)
+    if (format_info(format)->channels > 1)
         return colors[index];
     return format == FORMAT_R32UI ? "ID" : "Z";
 }

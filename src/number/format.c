@@ -9,10 +9,12 @@ static const FormatInfo infos[FORMAT_COUNT] = {
     [FORMAT_RGBA16F] = {"rgba16f", KIND_HALF, 4, 2, 0},
     [FORMAT_RGBA16] = {"rgba16", KIND_UNORM, 4, 2, 65535},
     [FORMAT_RGBA8] = {"rgba8", KIND_UNORM, 4, 1, 255},
+    [FORMAT_RG16] = {"rg16", KIND_UNORM, 2, 2, 65535},
     [FORMAT_D32F] = {"d32f", KIND_FLOAT, 1, 4, 0},
     [FORMAT_D24] = {"d24", KIND_UNORM, 1, 4, 16777215},
     [FORMAT_D16] = {"d16", KIND_UNORM, 1, 4, 65535},
     [FORMAT_R32UI] = {"r32ui", KIND_UINT, 1, 4, 0},
+    [FORMAT_NONE] = {"none", KIND_UINT, 0, 0, 0},
 };
 
 const FormatInfo *format_info(PixelFormat format)
@@ -61,62 +63,41 @@ float format_channel(PixelFormat format, const void *pixel, int channel)
 
 void format_store(PixelFormat format, const float value[4], void *pixel)
 {
-    uint8_t bytes[4];
-    uint16_t words[4];
-    switch (format) {
-    case FORMAT_RGBA8:
-        for (int i = 0; i < 4; i++)
+    const FormatInfo *info = &infos[format];
+    uint8_t *bytes = pixel;
+    assert(info->channels != 1);
+    for (int i = 0; i < info->channels; i++) {
+        uint16_t word;
+        if (info->kind == KIND_FLOAT) {
+            memcpy(bytes + 4 * i, &value[i], sizeof value[i]);
+        } else if (info->channel_bytes == 1) {
             bytes[i] = unorm8_from_float(value[i]);
-        memcpy(pixel, bytes, sizeof bytes);
-        return;
-    case FORMAT_RGBA16:
-    case FORMAT_RGBA16F:
-        for (int i = 0; i < 4; i++)
-            words[i] =
-                format == FORMAT_RGBA16 ? unorm16_from_float(value[i]) : half_from_float(value[i]);
-        memcpy(pixel, words, sizeof words);
-        return;
-    case FORMAT_RGBA32F:
-        memcpy(pixel, value, 4 * sizeof *value);
-        return;
-    case FORMAT_D32F:
-    case FORMAT_D24:
-    case FORMAT_D16:
-    case FORMAT_R32UI:
-    case FORMAT_COUNT:
-        break;
+        } else {
+            word =
+                info->kind == KIND_UNORM ? unorm16_from_float(value[i]) : half_from_float(value[i]);
+            memcpy(bytes + 2 * i, &word, sizeof word);
+        }
     }
-    assert(!"not a colour format");
 }
 
 void format_fetch(PixelFormat format, const void *pixel, float value[4])
 {
-    uint8_t bytes[4];
-    uint16_t words[4];
-    switch (format) {
-    case FORMAT_RGBA8:
-        memcpy(bytes, pixel, sizeof bytes);
-        for (int i = 0; i < 4; i++)
+    const FormatInfo *info = &infos[format];
+    const uint8_t *bytes = pixel;
+    assert(info->channels != 1);
+    for (int i = info->channels; i < 4; i++)
+        value[i] = i == 3 ? 1.0f : 0.0f;
+    for (int i = 0; i < info->channels; i++) {
+        uint16_t word;
+        if (info->kind == KIND_FLOAT) {
+            memcpy(&value[i], bytes + 4 * i, sizeof value[i]);
+        } else if (info->channel_bytes == 1) {
             value[i] = unorm8_to_float(bytes[i]);
-        return;
-    case FORMAT_RGBA16:
-    case FORMAT_RGBA16F:
-        memcpy(words, pixel, sizeof words);
-        for (int i = 0; i < 4; i++)
-            value[i] =
-                format == FORMAT_RGBA16 ? unorm16_to_float(words[i]) : half_to_float(words[i]);
-        return;
-    case FORMAT_RGBA32F:
-        memcpy(value, pixel, 4 * sizeof *value);
-        return;
-    case FORMAT_D32F:
-    case FORMAT_D24:
-    case FORMAT_D16:
-    case FORMAT_R32UI:
-    case FORMAT_COUNT:
-        break;
+        } else {
+            memcpy(&word, bytes + 2 * i, sizeof word);
+            value[i] = info->kind == KIND_UNORM ? unorm16_to_float(word) : half_to_float(word);
+        }
     }
-    assert(!"not a colour format");
 }
 
 uint8_t unorm8_from_float(float x)

@@ -13,10 +13,12 @@ typedef enum PixelFormat {
     FORMAT_RGBA16F,
     FORMAT_RGBA16, /* unorm */
     FORMAT_RGBA8,  /* unorm */
+    FORMAT_RG16,   /* unorm */
     FORMAT_D32F,   /* window depth as a float */
     FORMAT_D24,    /* window depth as a 24-bit unorm in a uint32_t */
     FORMAT_D16,    /* as a 16-bit unorm, in a uint32_t too */
     FORMAT_R32UI,  /* an index; UINT32_MAX is none */
+    FORMAT_NONE,   /* of a buffer that is not stored: no bytes */
     FORMAT_COUNT
 } PixelFormat;
 
@@ -45,8 +47,8 @@ uint32_t format_bits(PixelFormat format, const void *pixel, int channel);
  * unorm as integer / unorm_max in double, rounded to float. */
 float format_channel(PixelFormat format, const void *pixel, int channel);
 
-/* Four channels to and from a stored colour format, as a render target and a texel fetch do.
- * Flushing mode. */
+/* Four channels to and from a stored colour format, as a render target and a texel fetch do: those
+ * that are not stored are fetched as 0, alpha as 1. Flushing mode. */
 void format_store(PixelFormat format, const float value[4], void *pixel);
 void format_fetch(PixelFormat format, const void *pixel, float value[4]);
 

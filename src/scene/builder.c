@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "scene/shapes.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static char *copy_name(Builder *builder, const char *name)
@@ -41,6 +42,23 @@ uint32_t builder_mesh(Builder *builder, Result made, Mesh *mesh)
         return (uint32_t)(scene->mesh_count - 1);
     }
     shapes_free(mesh);
+    return 0;
+}
+
+uint32_t builder_texture(Builder *builder, Result made, Texture *texture)
+{
+    Scene *scene = &builder->scene;
+    if (!builder->result)
+        builder->result = made;
+    void *array = scene->textures;
+    if (grow(builder, &array, &builder->texture_room, scene->texture_count, sizeof *texture)) {
+        scene->textures = array;
+        scene->textures[scene->texture_count++] = *texture;
+        *texture = (Texture){0};
+        return (uint32_t)scene->texture_count;
+    }
+    free(texture->texels);
+    *texture = (Texture){0};
     return 0;
 }
 

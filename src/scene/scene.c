@@ -26,12 +26,15 @@ static void free_meshes(Scene *scene)
 void scene_free(Scene *scene)
 {
     free_meshes(scene);
+    for (size_t i = 0; scene->textures && i < scene->texture_count; i++)
+        free(scene->textures[i].texels);
     for (size_t i = 0; scene->materials && i < scene->material_count; i++)
         free(scene->materials[i].name);
     for (size_t i = 0; scene->instances && i < scene->instance_count; i++)
         free(scene->instances[i].name);
     for (size_t i = 0; scene->cameras && i < scene->camera_count; i++)
         free(scene->cameras[i].name);
+    free(scene->textures);
     free(scene->materials);
     free(scene->instances);
     free(scene->cameras);
@@ -77,6 +80,18 @@ static Result check_floats(size_t mesh, const char *what, const float *values, s
     return RESULT_OK;
 }
 
+/* A normal's square must not overflow, nor a texture coordinate over w. */
+static Result check_magnitudes(size_t mesh, const char *what, const float *values,
+                               size_t vertex_count, size_t channels)
+{
+    for (size_t i = 0; i < vertex_count * channels; i++)
+        if (fabsf(values[i]) > (float)COORDINATE_LIMIT)
+            return result_fail(RESULT_BAD_INPUT,
+                               "mesh %zu: %s of vertex %zu has component %g, expected within 1e15",
+                               mesh, what, i / channels, (double)values[i]);
+    return RESULT_OK;
+}
+
 static Result check_mesh(size_t number, const Mesh *mesh)
 {
     if (mesh->vertex_count == 0 || mesh->triangle_count == 0)
@@ -86,14 +101,12 @@ static Result check_mesh(size_t number, const Mesh *mesh)
     Result result = check_floats(number, "position", mesh->position, mesh->vertex_count, 3);
     if (!result)
         result = check_floats(number, "normal", mesh->normal, mesh->vertex_count, 3);
-    for (size_t i = 0; !result && i < (size_t)mesh->vertex_count * 3; i++)
-        if (fabsf(mesh->normal[i]) > (float)COORDINATE_LIMIT) /* its square must not overflow */
-            result = result_fail(RESULT_BAD_INPUT,
-                                 "mesh %zu: normal of vertex %zu has component %g, expected within "
-                                 "1e15",
-                                 number, i / 3, (double)mesh->normal[i]);
+    if (!result)
+        result = check_magnitudes(number, "normal", mesh->normal, mesh->vertex_count, 3);
     if (!result && mesh->uv)
         result = check_floats(number, "texture coordinate", mesh->uv, mesh->vertex_count, 2);
+    if (!result && mesh->uv)
+        result = check_magnitudes(number, "texture coordinate", mesh->uv, mesh->vertex_count, 2);
     if (result)
         return result;
     if (!mesh->index)
@@ -107,8 +120,26 @@ static Result check_mesh(size_t number, const Mesh *mesh)
     return RESULT_OK;
 }
 
-static Result check_material(size_t number, const Material *material)
+static Result check_texture(size_t number, const Texture *texture)
 {
+    if (!within(texture->width, 1, TEXTURE_MAX_PIXELS) ||
+        !within(texture->height, 1, TEXTURE_MAX_PIXELS))
+        return result_fail(RESULT_BAD_INPUT, "texture %zu: %u×%u texels, expected 1 to %d a side",
+                           number, texture->width, texture->height, TEXTURE_MAX_PIXELS);
+    if (texture->wrap_s > WRAP_MIRROR || texture->wrap_t > WRAP_MIRROR)
+        return result_fail(RESULT_BAD_INPUT, "texture %zu: unknown wrap mode", number);
+    if (!texture->texels)
+        return result_fail(RESULT_BAD_INPUT, "texture %zu: no texels", number);
+    for (size_t i = 0; i < (size_t)texture->width * texture->height * 4; i++)
+        if (!within(texture->texels[i], 0.0, 1.0))
+            return result_fail(RESULT_BAD_INPUT, "texture %zu: texel %zu has %g, expected 0 to 1",
+                               number, i / 4, (double)texture->texels[i]);
+    return RESULT_OK;
+}
+
+static Result check_material(const Scene *scene, size_t number)
+{
+    const Material *material = &scene->materials[number];
     const struct {
         const char *what;
         float value;
@@ -126,6 +157,12 @@ static Result check_material(size_t number, const Material *material)
         return result_fail(RESULT_BAD_INPUT,
                            "material %zu: alpha cutoff is %g, expected a finite number from 0",
                            number, (double)material->alpha_cutoff);
+    if (material->base_color_texture > scene->texture_count ||
+        material->metallic_roughness_texture > scene->texture_count)
+        return result_fail(RESULT_BAD_INPUT,
+                           "material %zu: texture %u or %u out of range, expected at most %zu",
+                           number, material->base_color_texture,
+                           material->metallic_roughness_texture, scene->texture_count);
     if (!material->name)
         return result_fail(RESULT_BAD_INPUT, "material %zu: no name", number);
     return RESULT_OK;
@@ -285,8 +322,10 @@ Result scene_validate(const Scene *scene)
     Result result = check_surroundings(scene);
     for (size_t i = 0; !result && i < scene->mesh_count; i++)
         result = check_mesh(i, &scene->meshes[i]);
+    for (size_t i = 0; !result && i < scene->texture_count; i++)
+        result = check_texture(i, &scene->textures[i]);
     for (size_t i = 0; !result && i < scene->material_count; i++)
-        result = check_material(i, &scene->materials[i]);
+        result = check_material(scene, i);
     if (!result)
         result = check_instances(scene);
     for (size_t i = 0; !result && i < scene->light_count; i++)

@@ -18,9 +18,27 @@ typedef struct Mesh {
     uint32_t triangle_count;
     float *position; /* 3 per vertex, finite */
     float *normal;   /* 3 per vertex, as stored: not normalised here */
-    float *uv;       /* 2 per vertex, v down as in glTF; NULL if the file has none */
+    float *uv;       /* 2 per vertex, v down as in glTF, within 1e15; NULL if the file has none */
     uint32_t *index; /* 3 per triangle, each < vertex_count */
 } Mesh;
+
+typedef enum TextureWrap {
+    WRAP_REPEAT = 0,
+    WRAP_CLAMP, /* to the edge */
+    WRAP_MIRROR /* mirrored repeat */
+} TextureWrap;
+
+/* An image with its sampler: no mip levels. How it is sampled: frame/shading.h. */
+typedef struct Texture {
+    uint32_t width, height; /* 1 … TEXTURE_MAX_PIXELS */
+    float *texels;          /* RGBA, linear, each in [0, 1]; row 0 is at v = 0 */
+    TextureWrap wrap_s, wrap_t;
+    bool nearest; /* else bilinear */
+} Texture;
+
+enum {
+    TEXTURE_MAX_PIXELS = 16384
+}; /* per side */
 
 typedef enum AlphaMode {
     ALPHA_OPAQUE = 0,
@@ -37,6 +55,9 @@ typedef struct Material {
     AlphaMode alpha_mode;
     float alpha_cutoff; /* for ALPHA_MASK: below it a fragment is discarded */
     bool double_sided;
+    /* 1 + index into the scene's textures, 0 for none. Multiplied with base_color; green with
+     * roughness and blue with metallic. Without the mesh's uv they are sampled at (0, 0). */
+    uint32_t base_color_texture, metallic_roughness_texture;
 } Material;
 
 typedef struct Instance {
@@ -61,8 +82,9 @@ typedef struct Camera {
 
 typedef struct Scene {
     char *name; /* the file's name without folder and extension */
-    size_t mesh_count, material_count, instance_count, light_count, camera_count;
+    size_t mesh_count, texture_count, material_count, instance_count, light_count, camera_count;
     Mesh *meshes;
+    Texture *textures;
     Material *materials;
     Instance *instances; /* in the scene's draw order */
     Light *lights;

@@ -357,11 +357,9 @@ static Result allocate(Peel *state)
     const RenderDesc *desc = pass->desc;
     int width = pass->view.width, height = pass->view.height;
     size_t pixels = (size_t)width * (size_t)height;
-    Result result = gbuffer_create(width, height, desc->gbuffer, pass->depth_format,
-                                   desc->depth_range, &state->opaque);
+    Result result = gbuffer_create(desc, &state->opaque);
     if (result == RESULT_OK)
-        result = gbuffer_create(width, height, desc->gbuffer, pass->depth_format, desc->depth_range,
-                                &state->layer);
+        result = gbuffer_create(desc, &state->layer);
     if (result == RESULT_OK)
         result = image_create(width, height, pass->depth_format, &state->previous_depth);
     if (result == RESULT_OK)
