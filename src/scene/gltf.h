@@ -11,6 +11,12 @@
  * scene without cameras gets a framing camera, one without point lights the default lights. What
  * the file has and Peel does not model is named in one warning.
  *
+ * Textures of base colour and of metallic and roughness, PNG or JPEG, are decoded to linear texels
+ * (scene/texture.h): one for every image, sampler and encoding that drawn materials use, at most
+ * 2^28 texels in all. Mesh.uv is the set that the base-colour texture names (without one, the
+ * metallic-roughness texture; without textures, TEXCOORD_0), floats with the file's bits. A
+ * metallic-roughness texture on another set is left out.
+ *
  * Beyond glTF, extras of nodes:
  *   "attenuation": [c, l, q]        on a light's node; without it (0, 0, 1), as the extension says
  *   "ambient": [r, g, b]            on any node; 0.25 without

@@ -21,6 +21,10 @@ int gltf_file_kind(const char *path);
 Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t binary_count,
                           unsigned char **out, size_t *out_count);
 
+/* The bytes of a "data:" uri in base64 (RFC 2397, RFC 4648; padding may be missing). The caller
+ * frees *bytes. BAD_INPUT with a message that names neither file nor place, NO_MEMORY. */
+Result gltf_file_from_data_uri(const char *uri, unsigned char **bytes, size_t *count);
+
 /* "data:application/octet-stream;base64," and the bytes (RFC 4648); the caller frees it. NULL
  * without memory. */
 char *gltf_file_data_uri(const unsigned char *bytes, size_t count);
