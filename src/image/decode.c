@@ -19,13 +19,10 @@
 #define STBI_NO_STDIO
 #define STBI_NO_SIMD /* one code for all processors */
 #define STBI_FAILURE_USERMSG
-#define STBI_MAX_DIMENSIONS 16384
 /* Declared and defined under different names, which a compiler warns of at the file's end. */
 #define stbi_set_unpremultiply_on_load_thread stbi__unpremultiply_on_load_thread
 #include <stb_image.h>
 #pragma GCC diagnostic pop
-
-_Static_assert((int)STBI_MAX_DIMENSIONS == (int)DECODE_MAX_PIXELS, "stb's limit is ours");
 
 /* "PNG" or "JPEG" by the first bytes; NULL for anything else. */
 static const char *kind_of(const unsigned char *bytes, size_t count)

@@ -30,9 +30,12 @@ Result gltf_load(const char *path, Scene *out);
 
 /* Writes .gltf (buffers embedded) or .glb by the extension, to a temporary name, then renames. All
  * numbers keep their bits; loading gives the same floats, and matrices rounded to float. The extras
- * above are written. Dropped: occlusion other than 1 (with a warning), meshes without an instance,
- * the cutoff of materials that are not MASK. BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED (2 GiB of
- * geometry or more). */
+ * above are written. Textures are embedded as PNG of 8 bits: texels that come from 8 bits keep
+ * their bits, others are rounded with a warning. Dropped: occlusion other than 1 (with a warning),
+ * meshes without an instance, textures without a material, the cutoff of materials that are not
+ * MASK. BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED (2 GiB of geometry, 2^28 texels in one texture, or
+ * more).
+ */
 Result gltf_write(const Scene *scene, const char *path);
 
 #endif

@@ -121,15 +121,14 @@ Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t 
     return RESULT_OK;
 }
 
-char *gltf_file_data_uri(const unsigned char *bytes, size_t count)
+char *gltf_file_data_uri(const char *type, const unsigned char *bytes, size_t count)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    static const char prefix[] = "data:application/octet-stream;base64,";
-    char *uri = memory_array(sizeof prefix + (count + 2) / 3 * 4, 1);
+    size_t room = sizeof "data:;base64," + strlen(type) + (count + 2) / 3 * 4;
+    char *uri = memory_array(room, 1);
     if (!uri)
         return NULL;
-    memcpy(uri, prefix, sizeof prefix);
-    char *out = uri + sizeof prefix - 1;
+    char *out = uri + snprintf(uri, room, "data:%s;base64,", type);
     for (size_t i = 0; i < count; i += 3) {
         uint32_t group = (uint32_t)bytes[i] << 16;
         group |= i + 1 < count ? (uint32_t)bytes[i + 1] << 8 : 0;

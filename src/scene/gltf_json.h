@@ -32,6 +32,15 @@ enum {
     TYPE_FLOAT
 };
 
+/* GL's names for what a sampler may say. */
+enum {
+    FILTER_NEAREST = 9728,
+    FILTER_LINEAR,
+    SAMPLER_REPEAT = 10497,
+    SAMPLER_CLAMP = 33071,
+    SAMPLER_MIRROR = 33648
+};
+
 /* What a file may have and Peel does not model; a bit each. */
 typedef enum GltfNote {
     NOTE_TEXTURES = 0,

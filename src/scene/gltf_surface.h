@@ -4,15 +4,6 @@
 
 #include "scene/gltf_check.h"
 
-/* GL's names for what a sampler may say. */
-enum {
-    FILTER_NEAREST = 9728,
-    FILTER_LINEAR,
-    SAMPLER_REPEAT = 10497,
-    SAMPLER_CLAMP = 33071,
-    SAMPLER_MIRROR = 33648
-};
-
 /* Every material, texture, sampler and image; sets notes for what is not modelled. */
 Result gltf_surface_check(const GltfCheck *check);
 
