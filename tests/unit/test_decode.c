@@ -155,6 +155,26 @@ START_TEST(jpeg)
 }
 END_TEST
 
+/* stb writes past its table for more than 256 codes, and reads on where a segment ends too early.
+ */
+START_TEST(huffman_tables)
+{
+    for (size_t codes = 255; codes <= 257; codes++) {
+        unsigned char bytes[300] = {0xff, 0xd8, 0xff, 0xc4};
+        size_t length = 2 + 17 + codes;
+        bytes[4] = (unsigned char)(length >> 8);
+        bytes[5] = (unsigned char)length;
+        bytes[21] = 255;
+        bytes[22] = (unsigned char)(codes - 255);
+        bytes[2 + 2 + length] = 0xff;
+        bytes[2 + 2 + length + 1] = 0xd9;
+        refused(bytes, 2 + 2 + length + 2, codes > 256 ? "broken Huffman tables" : "or corrupt");
+        bytes[5]--; /* the last code is outside */
+        refused(bytes, 2 + 2 + length + 2, "broken Huffman tables");
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("decode");
@@ -168,6 +188,7 @@ int main(void)
     tcase_add_test(test, encoded_pixels_come_back);
     tcase_add_test(test, broken_files);
     tcase_add_test(test, jpeg);
+    tcase_add_test(test, huffman_tables);
     suite_add_tcase(suite, test);
     return testing_run(suite);
 }
