@@ -41,11 +41,15 @@ static void random_formats(Random *random, RenderDesc *desc)
                                          FORMAT_RGBA8};
     desc->depth = depths[random_bits(random) % 3];
     desc->accum = accums[random_bits(random) % 4];
-    desc->gbuffer = (GBufferFormat)(random_bits(random) % 2);
+    desc->gbuffer = (GBufferFormat)(random_bits(random) % 3);
+    desc->position = (PositionSource)(random_bits(random) % 2);
+    desc->depth_range = (DepthRange)(random_bits(random) % 3);
     desc->depth_func = (DepthFunc)(random_bits(random) % 2);
     desc->peel_test = (PeelTest)(random_bits(random) % 2);
     desc->cull = (CullMode)(random_bits(random) % 3);
     desc->normals = (NormalMode)(random_bits(random) % 2);
+    desc->ggx = (GgxForm)(random_bits(random) % 2);
+    desc->back_light = random_bits(random) % 2;
     desc->opaque_blend = (OpaqueBlend)(random_bits(random) % 2);
 }
 
