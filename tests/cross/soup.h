@@ -134,8 +134,9 @@ static inline void soup_texture(Random *random, Soup *soup)
         if (random_bits(random) % 2)
             material->metallic_roughness_texture =
                 1 + (uint32_t)(random_bits(random) % SOUP_TEXTURES);
-        if (material->alpha_mode == ALPHA_MASK)
-            material->alpha_cutoff = (float)random_range(random, 0.05, 0.9);
+        if (material->alpha_mode == ALPHA_MASK) /* often the alpha of a texel */
+            material->alpha_cutoff =
+                soup->texels[random_bits(random) % SOUP_TEXTURES][random_bits(random) % 4];
     }
     soup->scene.textures = soup->textures;
     soup->scene.texture_count = SOUP_TEXTURES;
