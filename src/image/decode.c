@@ -41,25 +41,48 @@ static Result stb_failure(const char *label, const char *kind)
                        reason ? reason : "no reason given");
 }
 
-/* Whether a JPEG runs to its end marker: stb fills what is missing with grey.
- * Source: ITU-T T.81, annex B: segments with a length each; a scan's data, in which 0xff 0x00 and
- * the restarts d0 to d7 are no markers, behind each da. */
-static bool jpeg_ends(const unsigned char *bytes, size_t count)
+/* Whether a DHT segment is whole tables of at most 256 codes: Debian 12's stb reads the counts of
+ * a table even behind the segment, and writes past its own table when they are more. */
+static bool tables_fit(const unsigned char *segment, size_t count)
 {
+    size_t at = 0;
+    while (at + 17 <= count) {
+        size_t codes = 0;
+        for (size_t i = 1; i <= 16; i++)
+            codes += segment[at + i];
+        if (codes > 256)
+            return false;
+        at += 17 + codes;
+    }
+    return at == count;
+}
+
+/* NULL, or what is wrong with a JPEG that stb would not tell: it fills what is missing with grey.
+ * Source: ITU-T T.81, annex B: segments with a length each; a scan's data, in which 0xff 0x00 and
+ * the restarts d0 to d7 are no markers, behind each da. stb looks for markers in the same way. */
+static const char *jpeg_fault(const unsigned char *bytes, size_t count)
+{
+    static const char *const early = "it ends too early";
     size_t at = 2;
     while (at + 1 < count) {
         unsigned char marker = bytes[at + 1];
         bool data = bytes[at] != 0xff || marker == 0 || (marker >= 0xd0 && marker <= 0xd7);
-        if (data || marker == 0xff)
+        if (data || marker == 0xff) {
             at++;
-        else if (marker == 0xd9)
-            return true;
-        else if (at + 3 < count)
-            at += 2u + ((size_t)bytes[at + 2] << 8 | bytes[at + 3]);
-        else
-            return false;
+            continue;
+        }
+        if (marker == 0xd9)
+            return NULL;
+        if (at + 3 >= count)
+            return early;
+        size_t length = (size_t)bytes[at + 2] << 8 | bytes[at + 3];
+        if (length < 2 || length > count - at - 2)
+            return early;
+        if (marker == 0xc4 && !tables_fit(bytes + at + 4, length - 2))
+            return "broken Huffman tables";
+        at += 2 + length;
     }
-    return false;
+    return early;
 }
 
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
@@ -72,6 +95,9 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     if (count > INT_MAX)
         return result_fail(RESULT_BAD_INPUT, "%s: %zu bytes of %s, expected below 2^31", label,
                            count, kind);
+    const char *fault = *kind == 'J' ? jpeg_fault(bytes, count) : NULL;
+    if (fault)
+        return result_fail(RESULT_BAD_INPUT, "%s: cannot decode the JPEG: %s", label, fault);
     if (!stbi_info_from_memory(bytes, (int)count, width, height, &channels))
         return stb_failure(label, kind);
     if (*width < 1 || *height < 1 || *width > DECODE_MAX_PIXELS || *height > DECODE_MAX_PIXELS)
@@ -88,9 +114,6 @@ Result decode_image(const unsigned char *bytes, size_t count, const char *label,
     if (result)
         return result;
     const char *kind = kind_of(bytes, count);
-    if (*kind == 'J' && !jpeg_ends(bytes, count))
-        return result_fail(RESULT_BAD_INPUT, "%s: cannot decode the JPEG: it ends too early",
-                           label);
     bool wide = stbi_is_16_bit_from_memory(bytes, (int)count);
     void *pixels = wide ? (void *)stbi_load_16_from_memory(bytes, (int)count, &width, &height,
                                                            &channels, STBI_rgb_alpha)

@@ -10,9 +10,9 @@ enum {
     DECODE_MAX_PIXELS = 16384
 }; /* per side */
 
-/* The size of an image, in pixels, from its header alone. The format is told from the first bytes.
- * label begins the message. BAD_INPUT for what is neither PNG nor JPEG, is broken, or has more than
- * DECODE_MAX_PIXELS a side. */
+/* The size of an image, in pixels, without decoding it. The format is told from the first bytes.
+ * label begins the message. BAD_INPUT for what is neither PNG nor JPEG, a broken header, a JPEG
+ * without its end, or more than DECODE_MAX_PIXELS a side. */
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
                    int *height);
 

@@ -33,9 +33,8 @@ Result gltf_load(const char *path, Scene *out);
  * above are written. Textures are embedded as PNG of 8 bits: texels that come from 8 bits keep
  * their bits, others are rounded with a warning. Dropped: occlusion other than 1 (with a warning),
  * meshes without an instance, textures without a material, the cutoff of materials that are not
- * MASK. BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED (2 GiB of geometry, 2^28 texels in one texture, or
- * more).
- */
+ * MASK. BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED (2 GiB of geometry and images, 2^28 texels in one
+ * texture, or more). */
 Result gltf_write(const Scene *scene, const char *path);
 
 #endif

@@ -157,8 +157,8 @@ static uint32_t find_mesh(Loader *loader, const json_t *primitive, const struct 
     return key.mesh;
 }
 
-/* The material of a primitive; the document's and Assimp's have the same number, but that Assimp
- * gives one to the default material too. */
+/* The material of a primitive, Assimp's number being `number`: one for every material of the
+ * document, though not always the same one, and one more for the default material. */
 static uint32_t find_material(Loader *loader, const json_t *primitive, unsigned number)
 {
     uint32_t *material = &loader->materials[number];

@@ -13,10 +13,17 @@ typedef struct GltfTextureArrays {
                            textures; 0 where no material uses it so */
 } GltfTextureArrays;
 
+/* Where images go in a binary file; put is NULL for data uris. */
+typedef struct GltfImageSink {
+    Result (*put)(void *context, const unsigned char *bytes, size_t count, size_t *view);
+    void *context;
+} GltfImageSink;
+
 /* Every texture that a material uses, as an embedded PNG of 8 bits. What 8 bits do not hold is
  * rounded, with a warning that begins with path. Free with gltf_texture_write_free, after a failure
  * too. NO_MEMORY, or UNSUPPORTED for more texels than a PNG holds here. */
-Result gltf_texture_write(const Scene *scene, const char *path, GltfTextureArrays *out);
+Result gltf_texture_write(const Scene *scene, const char *path, const GltfImageSink *sink,
+                          GltfTextureArrays *out);
 void gltf_texture_write_free(GltfTextureArrays *arrays);
 
 #endif

@@ -88,10 +88,9 @@ static json_t *doubles(Writer *writer, const double *values, int count)
 
 /* ---- buffer --------------------------------------------------------------------------------- */
 
-/* A view of `size` bytes at the end of the buffer, on a 4-byte boundary, and an accessor of all
- * of it, which is returned for further properties (borrowed; NULL after a failure). */
-static json_t *add_accessor(Writer *writer, const void *data, size_t size, int target, int type,
-                            const char *shape, size_t count)
+/* A view of `size` bytes at the end of the buffer, on a 4-byte boundary: borrowed, NULL after a
+ * failure. */
+static json_t *add_view(Writer *writer, const void *data, size_t size)
 {
     size_t begin = writer->byte_count, end = begin + (size + 3) / 4 * 4;
     void *bytes = writer->bytes;
@@ -107,13 +106,24 @@ static json_t *add_accessor(Writer *writer, const void *data, size_t size, int t
     put_integer(writer, view, "buffer", 0);
     put_integer(writer, view, "byteOffset", begin);
     put_integer(writer, view, "byteLength", size);
+    append(writer, writer->views, view);
+    return writer->out_of_json ? NULL : view;
+}
+
+/* A view and an accessor of all of it, which is returned for further properties (borrowed; NULL
+ * after a failure). */
+static json_t *add_accessor(Writer *writer, const void *data, size_t size, int target, int type,
+                            const char *shape, size_t count)
+{
+    json_t *view = add_view(writer, data, size);
+    if (!view)
+        return NULL;
     put_integer(writer, view, "target", (size_t)target);
     json_t *accessor = json_object();
-    put_integer(writer, accessor, "bufferView", json_array_size(writer->views));
+    put_integer(writer, accessor, "bufferView", json_array_size(writer->views) - 1);
     put_integer(writer, accessor, "componentType", (size_t)type);
     put_integer(writer, accessor, "count", count);
     put(writer, accessor, "type", json_string(shape));
-    append(writer, writer->views, view);
     append(writer, writer->accessors, accessor);
     return accessor;
 }
@@ -169,6 +179,14 @@ static void add_geometry(Writer *writer, uint32_t index)
     if (mesh->uv)
         add_accessor(writer, mesh->uv, (size_t)mesh->vertex_count * 2 * sizeof(float),
                      TARGET_VERTICES, TYPE_FLOAT, "VEC2", mesh->vertex_count);
+}
+
+/* A texture's PNG file, for gltf_texture_write. */
+static Result embed_image(void *context, const unsigned char *bytes, size_t count, size_t *view)
+{
+    Writer *writer = context;
+    *view = json_array_size(writer->views);
+    return add_view(writer, bytes, count) ? RESULT_OK : writer->result;
 }
 
 /* ---- pieces --------------------------------------------------------------------------------- */
@@ -377,7 +395,6 @@ static json_t *document(Writer *writer)
     const Scene *scene = writer->scene;
     json_t *root = json_object(), *asset = json_object();
     json_t *meshes = json_array(), *materials = json_array(), *cameras = json_array();
-    writer->views = json_array();
     writer->accessors = json_array();
     put(writer, asset, "version", json_string("2.0"));
     put(writer, asset, "generator", json_string("Peel"));
@@ -397,7 +414,7 @@ static json_t *document(Writer *writer)
     put_array(writer, root, "images", json_incref(writer->textures.images));
     put_array(writer, root, "cameras", cameras);
     put_array(writer, root, "accessors", writer->accessors);
-    put_array(writer, root, "bufferViews", writer->views);
+    put_array(writer, root, "bufferViews", json_incref(writer->views));
     return root;
 }
 
@@ -425,8 +442,9 @@ static Result write_document(Writer *writer, const char *path, bool binary)
     put_buffer(writer, root, binary);
     Result result = writer->result;
     if (!result && writer->byte_count > INT32_MAX)
-        result = result_fail(RESULT_UNSUPPORTED, "%s: %zu bytes of geometry, expected below 2^31",
-                             path, writer->byte_count);
+        result = result_fail(RESULT_UNSUPPORTED,
+                             "%s: %zu bytes of geometry and images, expected below 2^31", path,
+                             writer->byte_count);
     char *text = result || writer->out_of_json
                      ? NULL
                      : json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
@@ -460,10 +478,13 @@ Result gltf_write(const Scene *scene, const char *path)
     if (!writer.first_accessor)
         return RESULT_NO_MEMORY;
     memset(writer.first_accessor, 0xff, scene->mesh_count * sizeof *writer.first_accessor);
-    Result result = gltf_texture_write(scene, path, &writer.textures);
+    writer.views = json_array();
+    const GltfImageSink sink = {kind == 1 ? embed_image : NULL, &writer};
+    Result result = gltf_texture_write(scene, path, &sink, &writer.textures);
     if (!result)
         result = write_document(&writer, path, kind == 1);
     gltf_texture_write_free(&writer.textures);
+    json_decref(writer.views);
     free(writer.first_accessor);
     free(writer.pairs);
     free(writer.bytes);

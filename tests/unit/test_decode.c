@@ -155,6 +155,46 @@ START_TEST(jpeg)
 }
 END_TEST
 
+/* The same pixels with a restart behind the last of the four blocks. */
+START_TEST(jpeg_restarts)
+{
+    unsigned char bytes[8192];
+    size_t count = make_jpeg(bytes, sizeof bytes - 8), at = 0;
+    Image plain, restarted;
+    ck_assert_int_eq(decode_image(bytes, count, "x", &plain), RESULT_OK);
+    while (memcmp(bytes + at, "\xff\xda", 2) != 0)
+        ck_assert_uint_lt(++at, count - 1);
+    memmove(bytes + at + 6, bytes + at, count - at);
+    memcpy(bytes + at, "\xff\xdd\0\4\0\4", 6);
+    memcpy(bytes + count + 4, "\xff\xd0\xff\xd9", 4);
+    Result result = decode_image(bytes, count + 8, "x", &restarted);
+    ck_assert_msg(result == RESULT_OK, "%s", result_message());
+    ck_assert_mem_eq(plain.pixels, restarted.pixels, 32 * 8 * 4);
+    image_free(&plain);
+    image_free(&restarted);
+}
+END_TEST
+
+/* stb writes past its table for more than 256 codes, and reads on where a segment ends too early.
+ */
+START_TEST(huffman_tables)
+{
+    for (size_t codes = 255; codes <= 257; codes++) {
+        unsigned char bytes[300] = {0xff, 0xd8, 0xff, 0xc4};
+        size_t length = 2 + 17 + codes;
+        bytes[4] = (unsigned char)(length >> 8);
+        bytes[5] = (unsigned char)length;
+        bytes[21] = 255;
+        bytes[22] = (unsigned char)(codes - 255);
+        bytes[2 + 2 + length] = 0xff;
+        bytes[2 + 2 + length + 1] = 0xd9;
+        refused(bytes, 2 + 2 + length + 2, codes > 256 ? "broken Huffman tables" : "or corrupt");
+        bytes[5]--; /* the last code is outside */
+        refused(bytes, 2 + 2 + length + 2, "broken Huffman tables");
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("decode");
@@ -168,6 +208,8 @@ int main(void)
     tcase_add_test(test, encoded_pixels_come_back);
     tcase_add_test(test, broken_files);
     tcase_add_test(test, jpeg);
+    tcase_add_test(test, jpeg_restarts);
+    tcase_add_test(test, huffman_tables);
     suite_add_tcase(suite, test);
     return testing_run(suite);
 }

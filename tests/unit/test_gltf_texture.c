@@ -73,27 +73,31 @@ START_TEST(shared_and_unused_textures)
 {
     Scene scene;
     char members[4096];
-    SmallPng png = textured_png();
+    SmallPng png = textured_png(), other = png_make(1, 1, 8, PNG_RGBA, textured_pixels + 4, 4);
     snprintf(members, sizeof members,
              "\"meshes\":[{\"primitives\":["
              "{\"attributes\":" TEXTURED_ATTRIBUTES ",\"indices\":5,\"material\":0},"
              "{\"attributes\":" TEXTURED_ATTRIBUTES ",\"indices\":5,\"material\":2},"
-             "{\"attributes\":" TEXTURED_ATTRIBUTES ",\"indices\":5,\"material\":3}]}],"
-             "\"images\":[%s,{\"uri\":\"none.png\"}],"
+             "{\"attributes\":" TEXTURED_ATTRIBUTES ",\"indices\":5,\"material\":3},"
+             "{\"attributes\":" TEXTURED_ATTRIBUTES ",\"indices\":5,\"material\":4}]}],"
+             "\"images\":[%s,{\"uri\":\"none.png\"},%s],"
              "\"samplers\":[{\"wrapS\":33071},{\"wrapS\":33071,\"wrapT\":10497},{}],"
              "\"textures\":[{\"source\":0,\"sampler\":0},{\"source\":1},"
-             "{\"source\":0,\"sampler\":1},{\"source\":0,\"sampler\":2}],"
+             "{\"source\":0,\"sampler\":1},{\"source\":0,\"sampler\":2},{\"source\":2}],"
              "\"materials\":[" BASE_COLOR_0
              ",{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}}},"
              "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":2}}},"
-             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":3}}}]",
-             image_member(&png));
+             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":3}}},"
+             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":4}}}]",
+             image_member(&png), image_member(&other));
     load_textured(members, NULL, &scene);
-    ck_assert_uint_eq(scene.texture_count, 2); /* textures 0 and 2 say the same */
+    ck_assert_uint_eq(scene.texture_count, 3); /* textures 0 and 2 say the same */
     ck_assert_uint_eq(scene.mesh_count, 1);
     ck_assert_uint_eq(scene.materials[0].base_color_texture, 1);
     ck_assert_uint_eq(scene.materials[1].base_color_texture, 1);
     ck_assert_uint_eq(scene.materials[2].base_color_texture, 2);
+    ck_assert_uint_eq(scene.materials[3].base_color_texture, 3);
+    same_texels(&scene.textures[2], textured_pixels + 4, TEXTURE_SRGB);
     scene_free(&scene);
 }
 END_TEST
@@ -335,6 +339,12 @@ START_TEST(written_textures_come_back)
         load(path, &again);
         same_textures(&scene, &again);
         scene_free(&again);
+        unsigned char *bytes;
+        size_t count;
+        ck_assert_int_eq(gltf_file_read(path, &bytes, &count), RESULT_OK);
+        const char *text = (const char *)bytes + (binary ? 20 : 0); /* behind the header */
+        ck_assert_int_eq(strstr(text, "data:") == NULL, binary);    /* not in binary files */
+        free(bytes);
     }
     scene_free(&scene);
 }

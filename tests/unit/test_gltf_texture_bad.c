@@ -1,4 +1,6 @@
 /* Broken textures in glTF files: each is refused with one line. */
+#include "scene/gltf_bytes.h"
+
 #include "textured_gltf.h"
 
 #include <stdio.h>
@@ -100,6 +102,28 @@ START_TEST(too_many_texels)
 }
 END_TEST
 
+/* Assimp finds the same, but only in buffers that it reads. */
+START_TEST(short_buffers)
+{
+    json_error_t error;
+    GltfJson json = {
+        .root = json_loads("{\"buffers\":[{\"byteLength\":4,\"uri\":\"data:;base64,AAAA\"}],"
+                           "\"bufferViews\":[{\"buffer\":0,\"byteLength\":4}],"
+                           "\"images\":[{\"bufferView\":0}]}",
+                           0, &error)};
+    GltfBytes bytes = {.path = "x.gltf", .json = &json};
+    GltfSpan span;
+    ck_assert_ptr_nonnull(json.root);
+    for (int i = 0; i < 2; i++) { /* and is not taken for read */
+        ck_assert_int_eq(gltf_bytes_image(&bytes, 0, &span), RESULT_BAD_INPUT);
+        ck_assert_str_eq(result_message(), "x.gltf: buffer 0: 3 bytes, expected 4");
+        ck_assert_ptr_null(span.bytes);
+    }
+    gltf_bytes_free(&bytes);
+    gltf_json_free(&json);
+}
+END_TEST
+
 START_TEST(bad_coordinates)
 {
     refuses("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":0},"
@@ -134,6 +158,7 @@ int main(void)
     tcase_add_test(test, bad_samplers);
     tcase_add_test(test, bad_images);
     tcase_add_test(test, too_many_texels);
+    tcase_add_test(test, short_buffers);
     tcase_add_test(test, bad_coordinates);
     suite_add_tcase(suite, test);
     return testing_run(suite);

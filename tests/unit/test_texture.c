@@ -125,7 +125,8 @@ START_TEST(nearest_codes)
 {
     float low = texture_decode(TEXTURE_SRGB, 100, 255),
           high = texture_decode(TEXTURE_SRGB, 101, 255);
-    float texels[4] = {low + 0.4f * (high - low), low + 0.6f * (high - low), 1.0f, 0.5f};
+    float texels[4] = {low + 0.4f * (high - low), low + 0.6f * (high - low),
+                       0.5f * texture_decode(TEXTURE_SRGB, 1, 255), 0.999f};
     Texture texture = {.width = 1, .height = 1, .texels = texels};
     Image image;
     bool exact = true;
@@ -134,8 +135,8 @@ START_TEST(nearest_codes)
     ck_assert(!exact);
     ck_assert_uint_eq(codes[0], 100);
     ck_assert_uint_eq(codes[1], 101);
-    ck_assert_uint_eq(codes[2], 255);
-    ck_assert_uint_eq(codes[3], 127); /* 0.5 lies between two: the smaller */
+    ck_assert_uint_eq(codes[2], 0); /* as near as 1 */
+    ck_assert_uint_eq(codes[3], 255);
     image_free(&image);
 }
 END_TEST
