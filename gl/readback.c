@@ -11,6 +11,7 @@ static const Transfer transfers[FORMAT_COUNT] = {
     [FORMAT_RGBA16F] = {GL_RGBA, GL_HALF_FLOAT},
     [FORMAT_RGBA16] = {GL_RGBA, GL_UNSIGNED_SHORT},
     [FORMAT_RGBA8] = {GL_RGBA, GL_UNSIGNED_BYTE},
+    [FORMAT_RG16] = {GL_RG, GL_UNSIGNED_SHORT},
     [FORMAT_D32F] = {GL_DEPTH_COMPONENT, GL_FLOAT},
     [FORMAT_D24] = {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
     [FORMAT_D16] = {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
@@ -88,7 +89,10 @@ Result readback_trace_gbuffer(const Targets *targets, GLuint framebuffer, int pe
     Result result = put(targets, peel, "depth", targets->depth_format, trace, scratch);
     for (int i = 0; i < GBUFFER_TARGETS && result == RESULT_OK; i++) {
         PixelFormat format = targets->color_format[i];
-        readback_color(targets, framebuffer, i, format, READBACK_TOP_DOWN, scratch);
+        if (format == FORMAT_NONE)
+            continue;
+        readback_color(targets, framebuffer, targets->attachment[i], format, READBACK_TOP_DOWN,
+                       scratch);
         result = put(targets, peel, names[i], format, trace, scratch);
     }
     return result;
