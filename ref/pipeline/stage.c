@@ -1,0 +1,263 @@
+#include "ref/pipeline/stage.h"
+
+#include "base/memory.h"
+#include "number/blend.h"
+#include "number/op.h"
+#include "ref/pipeline/shade.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* ---- geometry ---- */
+
+void stage_shade_winners(const StageVisit *visit, uint32_t tile)
+{
+    const Pass *pass = visit->stage->pass;
+    PixelRect rect = pass_tile_rect(pass, tile);
+    const uint32_t *ids = visit->target->primitive.pixels;
+    for (int y = rect.y0; y <= rect.y1; y++)
+        for (int x = rect.x0; x <= rect.x1; x++) {
+            size_t pixel = stage_pixel(pass, x, y);
+            if (ids[pixel] == PRIMITIVE_NONE)
+                continue;
+            const Primitive *primitive = &visit->list->items[visit->stage->winner[pixel]];
+            Setup setup;
+            Texel texel;
+            pass_setup(pass, primitive, &setup);
+            fragment_shade(pass, &setup, primitive, x, y, &texel);
+            gbuffer_store(visit->target, x, pass->view.height - 1 - y, &texel);
+        }
+}
+
+static void visit_opaque(void *context, const Setup *setup, int x, int y)
+{
+    const StageVisit *visit = context;
+    stage_keep(visit, setup, x, y, pass_fragment_depth(visit->stage->pass, setup, x, y));
+}
+
+static void opaque_tile(Stage *stage, uint32_t tile)
+{
+    StageVisit visit = {
+        .stage = stage, .target = &stage->opaque, .list = &stage->pass->geometry.opaque};
+    stage_draw(&stage->pass->opaque_bins, tile, visit_opaque, &visit);
+    stage_shade_winners(&visit, tile);
+}
+
+Result stage_opaque(Stage *stage)
+{
+    Result result = stage_run(stage, opaque_tile);
+    return result == RESULT_OK ? stage_put_gbuffer(stage, -1, &stage->opaque) : result;
+}
+
+/* ---- lighting ---- */
+
+static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
+{
+    const Pass *pass = stage->pass;
+    const GBuffer *source = stage->lit;
+    bool seed = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
+    ShadeForm form = pass_shade_form(pass, transparent);
+    PixelRect rect = pass_tile_rect(pass, tile);
+    for (int y = rect.y0; y <= rect.y1; y++)
+        for (int x = rect.x0; x <= rect.x1; x++) {
+            int row = pass->view.height - 1 - y;
+            Texel texel;
+            float color[4];
+            gbuffer_load(source, x, row, &texel);
+            fragment_decode(pass, stage_key(&source->depth, stage_pixel(pass, x, y)), x, y, &texel);
+            if (!shade_pixel(&pass->view, &form, &texel, color))
+                continue;
+            void *pixel = image_pixel(&stage->accum, x, row);
+            if (seed)
+                blend_opaque_seed(stage->accum.format, color, pixel);
+            else
+                blend_under(stage->accum.format, color, pixel);
+        }
+}
+
+static void light_transparent_tile(Stage *stage, uint32_t tile)
+{
+    light_tile(stage, tile, true);
+}
+
+static void light_opaque_tile(Stage *stage, uint32_t tile)
+{
+    light_tile(stage, tile, false);
+}
+
+Result stage_light(Stage *stage, const GBuffer *source, bool transparent)
+{
+    stage->lit = source;
+    return stage_run(stage, transparent ? light_transparent_tile : light_opaque_tile);
+}
+
+/* ---- resolve ---- */
+
+static void resolve_pixel(Stage *stage, int x, int row)
+{
+    const Pass *pass = stage->pass;
+    float accum[4], opaque[4];
+    format_fetch(stage->accum.format, image_pixel(&stage->accum, x, row), accum);
+    format_fetch(stage->opaque.diffuse.format, image_pixel(&stage->opaque.diffuse, x, row), opaque);
+    float *final = image_pixel(&stage->frame->final, x, row);
+    shade_final(&pass->view, accum, pass_background_weight(pass, accum, opaque[3]), final);
+    shade_display(pass->fused, final, image_pixel(&stage->frame->display, x, row));
+}
+
+static void resolve_tile(Stage *stage, uint32_t tile)
+{
+    PixelRect rect = pass_tile_rect(stage->pass, tile);
+    for (int y = rect.y0; y <= rect.y1; y++)
+        for (int x = rect.x0; x <= rect.x1; x++) {
+            resolve_pixel(stage, x, stage->pass->view.height - 1 - y);
+            pass_count_fragments(&stage->tile_counts[tile],
+                                 stage->fragments[stage_pixel(stage->pass, x, y)]);
+        }
+}
+
+Result stage_resolve(Stage *stage)
+{
+    int step = stage->frame->peels + 1;
+    const Image *accum = &stage->accum, *display = &stage->frame->display;
+    Result result = trace_put(stage->trace, "accum", step, accum->format, accum->width,
+                              accum->height, accum->pixels);
+    if (result == RESULT_OK)
+        result = stage_run(stage, resolve_tile);
+    if (result == RESULT_OK)
+        result = trace_put(stage->trace, "display", step + 1, display->format, display->width,
+                           display->height, display->pixels);
+    PassCounts sum = stage->counts;
+    for (uint32_t tile = 0; tile < stage->pass->tile_count; tile++)
+        pass_counts_add(&sum, &stage->tile_counts[tile]);
+    pass_counts_report(&sum, stage->frame);
+    return result;
+}
+
+Result stage_finish(Stage *stage)
+{
+    Result result = stage_light(stage, &stage->opaque, false);
+    return result == RESULT_OK ? stage_resolve(stage) : result;
+}
+
+/* ---- running and tracing ---- */
+
+static Result tile_task(void *context, uint32_t tile, int worker)
+{
+    Stage *stage = context;
+    (void)worker;
+    uint32_t saved = op_enter();
+    stage->function(stage, tile);
+    op_leave(saved);
+    return RESULT_OK;
+}
+
+Result stage_run(Stage *stage, StageTile function)
+{
+    stage->function = function;
+    return pool_run(stage->pass->pool, stage->pass->tile_count, tile_task, stage);
+}
+
+Result stage_put(const Stage *stage, int peel, const char *what, const Image *image)
+{
+    if (peel >= 0)
+        return trace_put_peel(stage->trace, peel, what, image->format, image->width, image->height,
+                              image->pixels);
+    char name[48];
+    snprintf(name, sizeof name, "opaque.%s", what);
+    return trace_put(stage->trace, name, 0, image->format, image->width, image->height,
+                     image->pixels);
+}
+
+Result stage_put_gbuffer(const Stage *stage, int peel, const GBuffer *buffers)
+{
+    const struct {
+        const char *what;
+        const Image *image;
+    } rows[] = {
+        {"depth", &buffers->depth},       {"normal", &buffers->normal},
+        {"position", &buffers->position}, {"diffuse", &buffers->diffuse},
+        {"material", &buffers->material}, {"primitive", &buffers->primitive},
+    };
+    Result result = RESULT_OK;
+    for (size_t i = 0; result == RESULT_OK && i < sizeof rows / sizeof rows[0]; i++)
+        if (rows[i].image->format != FORMAT_NONE)
+            result = stage_put(stage, peel, rows[i].what, rows[i].image);
+    return result;
+}
+
+void stage_count_drawn(const GBuffer *layer, const Image *previous_depth, uint64_t *drawn,
+                       uint64_t *repeated)
+{
+    const Image *primitive = &layer->primitive;
+    *drawn = *repeated = 0;
+    for (size_t i = 0; i < (size_t)primitive->width * (size_t)primitive->height; i++) {
+        if (((const uint32_t *)primitive->pixels)[i] == PRIMITIVE_NONE)
+            continue;
+        ++*drawn;
+        *repeated += previous_depth && stage_key(&layer->depth, i) == stage_key(previous_depth, i);
+    }
+}
+
+/* ---- memory ---- */
+
+uint64_t stage_gbuffer_bytes(const Pass *pass)
+{
+    const GBufferLayout *layout = &pass->layout;
+    uint64_t pixel = format_pixel_bytes(layout->normal) + format_pixel_bytes(layout->position) +
+                     format_pixel_bytes(layout->diffuse) + format_pixel_bytes(layout->material) +
+                     format_pixel_bytes(pass->depth_format) + format_pixel_bytes(FORMAT_R32UI);
+    return pixel * (uint64_t)pass->view.width * (uint64_t)pass->view.height;
+}
+
+static void clear_accum(Image *accum)
+{
+    for (int y = 0; y < accum->height; y++)
+        for (int x = 0; x < accum->width; x++)
+            blend_clear(accum->format, image_pixel(accum, x, y));
+}
+
+static Result allocate(Stage *stage)
+{
+    const Pass *pass = stage->pass;
+    const RenderDesc *desc = pass->desc;
+    size_t pixels = (size_t)desc->width * (size_t)desc->height;
+    Result result = gbuffer_create(desc, &stage->opaque);
+    if (result == RESULT_OK)
+        result = image_create(desc->width, desc->height, desc->accum, &stage->accum);
+    if (result != RESULT_OK)
+        return result;
+    clear_accum(&stage->accum);
+    stage->fragments = memory_array(pixels, sizeof *stage->fragments);
+    stage->remaining = memory_array(pixels, sizeof *stage->remaining);
+    stage->winner = memory_array(pixels, sizeof *stage->winner);
+    stage->tile_counts = memory_array(pass->tile_count, sizeof *stage->tile_counts);
+    return stage->fragments && stage->remaining && stage->winner && stage->tile_counts
+               ? RESULT_OK
+               : RESULT_NO_MEMORY;
+}
+
+Result stage_create(Pass *pass, TraceSink *trace, Frame *frame, void *method, uint64_t bytes,
+                    Stage *out)
+{
+    uint64_t pixels = (uint64_t)pass->view.width * (uint64_t)pass->view.height;
+    uint64_t own = stage_gbuffer_bytes(pass) +
+                   pixels * (format_pixel_bytes(pass->desc->accum) + 3 * sizeof(uint32_t));
+    *out = (Stage){.pass = pass, .trace = trace, .frame = frame, .method = method};
+    Result result = pass_reserve(pass, own + bytes);
+    if (result == RESULT_OK)
+        result = allocate(out);
+    if (result != RESULT_OK)
+        stage_free(out);
+    return result;
+}
+
+void stage_free(Stage *stage)
+{
+    gbuffer_free(&stage->opaque);
+    image_free(&stage->accum);
+    free(stage->fragments);
+    free(stage->remaining);
+    free(stage->winner);
+    free(stage->tile_counts);
+    *stage = (Stage){0};
+}
