@@ -91,6 +91,7 @@ static void prepare_environment(int threads)
     const char *home = getenv("XDG_CACHE_HOME") ? getenv("XDG_CACHE_HOME") : getenv("HOME");
     if (!home || access(home, W_OK) != 0)
         setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    setenv("EGL_LOG_LEVEL", "fatal", 0); /* its complaints, too */
     if (threads > 0) {
         char text[16];
         snprintf(text, sizeof text, "%d", threads);

@@ -25,15 +25,22 @@ static void draw_all(void)
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+/* A point a texel, row by row: softpipe gets gl_VertexID wrong beyond 4096 vertices. */
+static void draw_points(void)
+{
+    for (int y = 0; y < EXPERIMENT_HEIGHT; y++)
+        gl.DrawArrays(GL_POINTS, y * EXPERIMENT_WIDTH, EXPERIMENT_WIDTH);
+}
+
 /* Draws with the current program to a colour target and reads it. */
-static Result draw_color(GlLab *lab, PixelFormat format, GLenum mode, GLsizei count, uint32_t *out)
+static Result draw_color(GlLab *lab, PixelFormat format, void (*draw)(void), uint32_t *out)
 {
     LabTarget target;
     Result result =
         lab_target(format, 1, FORMAT_NONE, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT, &target);
     if (result != RESULT_OK)
         return result;
-    gl.DrawArrays(mode, 0, count);
+    draw();
     lab_read_color(&target, 0, lab->pixels);
     widen(format, lab->pixels, EXPERIMENT_TEXELS, out);
     lab_target_destroy(&target);
@@ -49,14 +56,13 @@ static Result operate(GlLab *lab, const Experiment *experiment, uint32_t *out)
     Result result = lab_use(lab, defines);
     if (result != RESULT_OK)
         return result;
-    return experiment->vertex ? draw_color(lab, FORMAT_RGBA32F, GL_POINTS, EXPERIMENT_TEXELS, out)
-                              : draw_color(lab, FORMAT_RGBA32F, GL_TRIANGLES, 3, out);
+    return draw_color(lab, FORMAT_RGBA32F, experiment->vertex ? draw_points : draw_all, out);
 }
 
 static Result store(GlLab *lab, const Experiment *experiment, uint32_t *out)
 {
     Result result = lab_use(lab, COPY_BODY);
-    return result == RESULT_OK ? draw_color(lab, experiment->format, GL_TRIANGLES, 3, out) : result;
+    return result == RESULT_OK ? draw_color(lab, experiment->format, draw_all, out) : result;
 }
 
 static Result clear(GlLab *lab, const Experiment *experiment, uint32_t *out)
@@ -96,7 +102,7 @@ static Result fetch(GlLab *lab, const Experiment *experiment, uint32_t *out)
     gl.BindTextureUnit(0, texture);
     Result result = lab_use(lab, COPY_BODY);
     if (result == RESULT_OK)
-        result = draw_color(lab, FORMAT_RGBA32F, GL_TRIANGLES, 3, out);
+        result = draw_color(lab, FORMAT_RGBA32F, draw_all, out);
     gl.BindTextureUnit(0, lab->operands[0]);
     gl.DeleteTextures(1, &texture);
     return result;
@@ -104,7 +110,7 @@ static Result fetch(GlLab *lab, const Experiment *experiment, uint32_t *out)
 
 static Result store_depth(GlLab *lab, const Experiment *experiment, uint32_t *out)
 {
-    LabTarget target, fetched;
+    LabTarget target;
     Result result = lab_use(lab, COPY_BODY "#define WRITE_DEPTH\n");
     if (result == RESULT_OK)
         result = lab_target(FORMAT_NONE, 0, experiment->format, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT,
@@ -115,24 +121,40 @@ static Result store_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
     gl.DepthFunc(GL_ALWAYS);
     draw_all();
     gl.Disable(GL_DEPTH_TEST);
-    if (experiment->kind == EXPERIMENT_DEPTH_STORE) {
-        lab_read_depth(&target, out);
-    } else {
-        result = lab_use(lab, COPY_BODY);
-        if (result == RESULT_OK)
-            result = lab_target(FORMAT_RGBA32F, 1, FORMAT_NONE, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT,
-                                &fetched);
-        if (result == RESULT_OK) {
-            gl.BindTextureUnit(0, target.depth);
-            draw_all();
-            gl.BindTextureUnit(0, lab->operands[0]);
-            lab_read_color(&fetched, 0, lab->pixels);
-            for (int i = 0; i < EXPERIMENT_TEXELS; i++)
-                out[i] = op_bits(lab->pixels[i][0]);
-            lab_target_destroy(&fetched);
-        }
-    }
+    lab_read_depth(&target, out);
     lab_target_destroy(&target);
+    return RESULT_OK;
+}
+
+/* Codes are uploaded as 32 bits, the leading ones repeated, so that no rounding can change them. */
+static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *out)
+{
+    PixelFormat format = experiment->format;
+    GLuint texture = lab_texture(format, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT);
+    uint32_t *words = (uint32_t *)lab->pixels;
+    for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
+        uint32_t code = (uint32_t)experiment->a[i][0];
+        words[i] = format == FORMAT_D24   ? code << 8 | code >> 16
+                   : format == FORMAT_D16 ? code << 16 | code
+                                          : op_bits(experiment->a[i][0]);
+    }
+    gl.TextureSubImage2D(texture, 0, 0, 0, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT, GL_DEPTH_COMPONENT,
+                         format == FORMAT_D32F ? GL_FLOAT : GL_UNSIGNED_INT, words);
+    gl.BindTextureUnit(0, texture);
+    LabTarget target;
+    Result result = lab_use(lab, COPY_BODY);
+    if (result == RESULT_OK)
+        result = lab_target(FORMAT_RGBA32F, 1, FORMAT_NONE, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT,
+                            &target);
+    if (result == RESULT_OK) {
+        draw_all();
+        lab_read_color(&target, 0, lab->pixels);
+        for (int i = 0; i < EXPERIMENT_TEXELS; i++)
+            out[i] = op_bits(lab->pixels[i][0]);
+        lab_target_destroy(&target);
+    }
+    gl.BindTextureUnit(0, lab->operands[0]);
+    gl.DeleteTextures(1, &texture);
     return result;
 }
 
@@ -174,6 +196,8 @@ static Result perform(GlLab *lab, const Experiment *experiment, uint32_t *out)
         return clear(lab, experiment, out);
     case EXPERIMENT_FETCH:
         return fetch(lab, experiment, out);
+    case EXPERIMENT_DEPTH_FETCH:
+        return fetch_depth(lab, experiment, out);
     default:
         break;
     }

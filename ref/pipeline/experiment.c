@@ -21,12 +21,24 @@ static void put_codes(PixelFormat format, const void *pixel, uint32_t out[4])
         out[k] = k < format_info(format)->channels ? format_bits(format, pixel, k) : 0;
 }
 
-static void stores(const Experiment *experiment, int count, uint32_t *out)
+static void stores(const Experiment *experiment, uint32_t *out)
 {
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         unsigned char pixel[16];
         format_store(experiment->format, experiment->a[i], pixel);
         put_codes(experiment->format, pixel, &out[4 * i]);
+    }
+}
+
+static void clears(const Experiment *experiment, uint32_t *out)
+{
+    const FormatInfo *info = format_info(experiment->format);
+    for (int i = 0; i < experiment->count; i++) {
+        unsigned char pixel[16];
+        format_store(experiment->format, experiment->a[i], pixel);
+        put_codes(experiment->format, pixel, &out[4 * i]);
+        for (int k = 0; k < info->channels && info->unorm_max == 65535; k++)
+            out[4 * i + k] = unorm16_from_clear(experiment->a[i][k]);
     }
 }
 
@@ -48,12 +60,19 @@ static void fetches(const Experiment *experiment, uint32_t *out)
     }
 }
 
-static void depths(const Experiment *experiment, uint32_t *out)
+static void depth_stores(const Experiment *experiment, uint32_t *out)
+{
+    for (int i = 0; i < EXPERIMENT_TEXELS; i++)
+        out[i] = depth_key(experiment->format, experiment->a[i][0]);
+}
+
+static void depth_fetches(const Experiment *experiment, uint32_t *out)
 {
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
-        out[i] = depth_key(experiment->format, experiment->a[i][0]);
-        if (experiment->kind == EXPERIMENT_DEPTH_FETCH)
-            out[i] = op_bits(depth_fetch(experiment->format, out[i]));
+        float code = experiment->a[i][0];
+        out[i] = op_bits(experiment->format == FORMAT_D32F
+                             ? code
+                             : depth_fetch(experiment->format, (uint32_t)code));
     }
 }
 
@@ -77,17 +96,19 @@ static __attribute__((noinline)) void perform(bool fused, const Experiment *expe
         operations(fused, experiment, out);
         return;
     case EXPERIMENT_STORE:
-        stores(experiment, EXPERIMENT_TEXELS, out);
+        stores(experiment, out);
         return;
     case EXPERIMENT_CLEAR:
-        stores(experiment, experiment->count, out);
+        clears(experiment, out);
         return;
     case EXPERIMENT_FETCH:
         fetches(experiment, out);
         return;
     case EXPERIMENT_DEPTH_STORE:
+        depth_stores(experiment, out);
+        return;
     case EXPERIMENT_DEPTH_FETCH:
-        depths(experiment, out);
+        depth_fetches(experiment, out);
         return;
     case EXPERIMENT_BLEND:
         blends(experiment, out);

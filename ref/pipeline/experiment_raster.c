@@ -28,8 +28,8 @@ static void field_pixel(void *context, const Setup *setup, int x, int y)
     uint32_t *fields = &drawing->out[(y * RASTER_WIDTH + x) * RASTER_FIELDS];
     float z = setup_depth_at(drawing->pass.fused, setup, x, y);
     uint32_t key = depth_key(experiment->format, z);
-    uint32_t stored =
-        fields[RASTER_TRIANGLE] ? fields[RASTER_DEPTH] : depth_key_far(experiment->format, DEPTH_RANGE_GL);
+    uint32_t stored = fields[RASTER_TRIANGLE] ? fields[RASTER_DEPTH]
+                                              : depth_key_far(experiment->format, DEPTH_RANGE_GL);
     if (!(experiment->depth_func == DEPTH_LEQUAL ? key <= stored : key < stored))
         return;
     const Vertex *const *v = setup->corner;

@@ -5,20 +5,27 @@
 
 #include <string.h>
 
-static const char *const units[] = {
-    [DRIVER_FLOAT] = "ULP", [DRIVER_HALF] = "ULP", [DRIVER_CODE] = "codes"};
+/* How far off the worst sample is, with its unit. */
+static void print_most(const DriverRule *rule, char out[SUMMARY_NUMBER])
+{
+    const char *unit =
+        rule->value == DRIVER_CODE ? rule->max_distance == 1 ? "code" : "codes" : "ULP";
+    if (!rule->differing)
+        snprintf(out, SUMMARY_NUMBER, "0");
+    else if (rule->value != DRIVER_CODE && rule->max_distance == UINT32_MAX)
+        snprintf(out, SUMMARY_NUMBER, "NaN");
+    else
+        snprintf(out, SUMMARY_NUMBER, rule->max_distance < 10000000 ? "%.0f %s" : "%.1e %s",
+                 (double)rule->max_distance, unit);
+}
 
 static void print_row(const DriverRule *rule, FILE *out)
 {
     char samples[SUMMARY_NUMBER], differing[SUMMARY_NUMBER], most[SUMMARY_NUMBER];
-    const char *unit =
-        rule->differing && rule->max_distance != UINT32_MAX ? units[rule->value] : "";
-    fprintf(out, "%c %-19s %-38s %10s %10s %9s %-5s %s\n", rule->relied_on ? '*' : ' ', rule->id,
+    print_most(rule, most);
+    fprintf(out, "%c %-19s %-34s %9s %9s %13s %s\n", rule->relied_on ? '*' : ' ', rule->id,
             rule->what, summary_count(rule->samples, samples),
-            summary_count(rule->differing, differing),
-            rule->value != DRIVER_CODE ? summary_ulp(rule->max_distance, most)
-                                       : summary_count(rule->max_distance, most),
-            unit, driver_verdict_name(rule->verdict));
+            summary_count(rule->differing, differing), most, driver_verdict_name(rule->verdict));
 }
 
 /* The value as a number, then as its bits say it. */
@@ -59,7 +66,7 @@ static void print_example(const DriverRule *rule, FILE *out)
 static void print_rows(const DriverReport *report, FILE *out)
 {
     const char *section = "";
-    fprintf(out, "\n  %-19s %-38s %10s %10s %9s\n", "rule (* relied on)", "what", "samples",
+    fprintf(out, "\n  %-19s %-34s %9s %9s %13s\n", "rule (* relied on)", "what", "samples",
             "differing", "at most");
     for (size_t i = 0; i < report->count; i++) {
         const DriverRule *rule = &report->rules[i];

@@ -3,6 +3,7 @@
 #include "number/op.h"
 
 #include <math.h>
+#include <string.h>
 
 static const float specials[] = {
     0.0f,     -0.0f,   1.0f,     -1.0f,     0.5f,    2.0f,     INFINITY,    -INFINITY,
@@ -89,19 +90,29 @@ static void large(Random *random, double x[3], double y[3])
     while (fabs(area(x, y)) < 64.0);
 }
 
-/* Half of the corners are near the first one: many small triangles. */
-static void on_grid(Random *random, double step, double jitter, double x[3], double y[3])
+/* A coordinate inside the window, rounded down to multiples of step. */
+static double on_step(double value, double low, double high, double step)
+{
+    return floor(fmin(fmax(value, low), high) / step) * step;
+}
+
+/* Corners on multiples of half a pixel, moved by up to `off` times 1/512 of one. Every other
+ * triangle is small, and every other one has a horizontal and a vertical edge, or nearly. */
+static void on_grid(Random *random, int off, double x[3], double y[3])
 {
     double reach = random_bits(random) & 1 ? 6.0 : 60.0;
+    bool upright = random_bits(random) & 1;
     for (int i = 0; i < 3; i++) {
-        double wide_x = random_range(random, 1.0, RASTER_WIDTH - 1.0);
-        double wide_y = random_range(random, 1.0, RASTER_HEIGHT - 1.0);
-        x[i] = i ? fmin(fmax(x[0] + random_range(random, -reach, reach), 1), RASTER_WIDTH - 1)
-                 : wide_x;
-        y[i] = i ? fmin(fmax(y[0] + random_range(random, -reach, reach), 1), RASTER_HEIGHT - 1)
-                 : wide_y;
-        x[i] = floor(x[i] / step) * step + random_range(random, -jitter, jitter);
-        y[i] = floor(y[i] / step) * step + random_range(random, -jitter, jitter);
+        double from_x = i ? x[0] + random_range(random, -reach, reach)
+                          : random_range(random, 1.0, RASTER_WIDTH - 1.0);
+        double from_y = i ? y[0] + random_range(random, -reach, reach)
+                          : random_range(random, 1.0, RASTER_HEIGHT - 1.0);
+        x[i] = on_step(upright && i == 2 ? x[0] : from_x, 1.0, RASTER_WIDTH - 1.0, 0.5);
+        y[i] = on_step(upright && i == 1 ? y[0] : from_y, 1.0, RASTER_HEIGHT - 1.0, 0.5);
+    }
+    for (int i = 0; i < 3 && off; i++) {
+        x[i] += (double)((int)(random_bits(random) % (uint64_t)(2 * off + 1)) - off) / 512.0;
+        y[i] += (double)((int)(random_bits(random) % (uint64_t)(2 * off + 1)) - off) / 512.0;
     }
 }
 
@@ -119,9 +130,9 @@ void inputs_triangle(Random *random, TriangleKind kind, float clip[3][4], float 
         return;
     }
     if (kind == TRIANGLE_HALF_PIXEL)
-        on_grid(random, 0.5, 0.0, x, y);
+        on_grid(random, 0, x, y);
     else if (kind == TRIANGLE_SUBPIXEL)
-        on_grid(random, 0.5, 1.0 / 256.0, x, y);
+        on_grid(random, 3, x, y);
     else
         large(random, x, y);
     for (int i = 0; i < 3; i++) {

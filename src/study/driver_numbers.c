@@ -5,7 +5,7 @@
 #include <string.h>
 
 enum {
-    CLEARS = 512
+    CLEARS = 2048
 };
 
 static double greatest_code(PixelFormat format)
@@ -122,7 +122,7 @@ Result test_clear(Test *test)
     experiment.count = CLEARS;
     for (int i = 0; i < CLEARS; i++)
         for (int k = 0; k < 4; k++) {
-            InputSet set = i % 4 == 0 ? INPUT_UNIT : i % 4 == 1 ? INPUT_SPECIAL : INPUT_CODES;
+            InputSet set = i % 8 == 0 ? INPUT_UNIT : i % 8 == 1 ? INPUT_SPECIAL : INPUT_CODES;
             test->a[i][k] =
                 bounded(experiment.format,
                         inputs_value(&test->random, set, greatest_code(experiment.format)));
@@ -151,6 +151,30 @@ Result test_fetch(Test *test)
             test_example(test, &code, names, 1, test->expected[i], test->got[i]);
         if (example)
             snprintf(example->place, sizeof example->place, "channel %d", i % 4);
+    }
+    return result;
+}
+
+/* Every code of d16; of d24 a random sample and both ends. */
+Result test_depth_fetch(Test *test)
+{
+    static const char *const names[] = {"code"};
+    Experiment experiment = test->rule->experiment;
+    experiment.a = (const float(*)[4])test->a;
+    uint32_t most = format_info(experiment.format)->unorm_max;
+    Result result = RESULT_OK;
+    for (int round = 0; round < 2 && result == RESULT_OK; round++) {
+        for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
+            uint32_t code = (uint32_t)(2 * i + round);
+            if (experiment.format == FORMAT_D24 && i >= 16)
+                code = (uint32_t)random_bits(&test->random);
+            test->a[i][0] = most ? (float)((i & 1 ? most - code : code) & most)
+                                 : inputs_value(&test->random, INPUT_UNIT, 0.0);
+        }
+        result = run_both(test, &experiment);
+        for (int i = 0; i < EXPERIMENT_TEXELS && result == RESULT_OK; i++)
+            if (test_differs(test, test->expected[i], test->got[i]))
+                test_example(test, test->a[i], names, 1, test->expected[i], test->got[i]);
     }
     return result;
 }

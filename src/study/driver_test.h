@@ -44,6 +44,7 @@ DriverExample *test_example(Test *test, const float *inputs, const char *const *
 Result test_values(Test *test); /* operations, stores, depths and blends, per input set */
 Result test_clear(Test *test);
 Result test_fetch(Test *test);
+Result test_depth_fetch(Test *test);
 Result test_raster(Test *test);  /* triangle by triangle, the rule's fields */
 Result test_grid(Test *test);    /* shared edges */
 Result test_ties(Test *test);    /* two coinciding triangles */
