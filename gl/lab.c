@@ -126,11 +126,16 @@ static Result store_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
     return RESULT_OK;
 }
 
-/* Codes are uploaded as 32 bits, the leading ones repeated, so that no rounding can change them. */
+/* The driver may round what it uploads, so the codes are read back. */
 static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *out)
 {
     PixelFormat format = experiment->format;
-    GLuint texture = lab_texture(format, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT);
+    LabTarget depth, target;
+    Result result = lab_use(lab, COPY_BODY);
+    if (result == RESULT_OK)
+        result = lab_target(FORMAT_NONE, 0, format, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT, &depth);
+    if (result != RESULT_OK)
+        return result;
     uint32_t *words = (uint32_t *)lab->pixels;
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         uint32_t code = (uint32_t)experiment->a[i][0];
@@ -138,23 +143,24 @@ static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
                    : format == FORMAT_D16 ? code << 16 | code
                                           : op_bits(experiment->a[i][0]);
     }
-    gl.TextureSubImage2D(texture, 0, 0, 0, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT, GL_DEPTH_COMPONENT,
-                         format == FORMAT_D32F ? GL_FLOAT : GL_UNSIGNED_INT, words);
-    gl.BindTextureUnit(0, texture);
-    LabTarget target;
-    Result result = lab_use(lab, COPY_BODY);
-    if (result == RESULT_OK)
-        result = lab_target(FORMAT_RGBA32F, 1, FORMAT_NONE, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT,
-                            &target);
+    gl.TextureSubImage2D(depth.depth, 0, 0, 0, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT,
+                         GL_DEPTH_COMPONENT, format == FORMAT_D32F ? GL_FLOAT : GL_UNSIGNED_INT,
+                         words);
+    lab_read_depth(&depth, words);
+    for (int i = 0; i < EXPERIMENT_TEXELS; i++)
+        out[2 * i] = words[i];
+    result =
+        lab_target(FORMAT_RGBA32F, 1, FORMAT_NONE, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT, &target);
     if (result == RESULT_OK) {
+        gl.BindTextureUnit(0, depth.depth);
         draw_all();
+        gl.BindTextureUnit(0, lab->operands[0]);
         lab_read_color(&target, 0, lab->pixels);
         for (int i = 0; i < EXPERIMENT_TEXELS; i++)
-            out[i] = op_bits(lab->pixels[i][0]);
+            out[2 * i + 1] = op_bits(lab->pixels[i][0]);
         lab_target_destroy(&target);
     }
-    gl.BindTextureUnit(0, lab->operands[0]);
-    gl.DeleteTextures(1, &texture);
+    lab_target_destroy(&depth);
     return result;
 }
 

@@ -69,10 +69,9 @@ static void depth_stores(const Experiment *experiment, uint32_t *out)
 static void depth_fetches(const Experiment *experiment, uint32_t *out)
 {
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
-        float code = experiment->a[i][0];
-        out[i] = op_bits(experiment->format == FORMAT_D32F
-                             ? code
-                             : depth_fetch(experiment->format, (uint32_t)code));
+        float value = experiment->a[i][0];
+        out[2 * i] = experiment->format == FORMAT_D32F ? op_bits(value) : (uint32_t)value;
+        out[2 * i + 1] = op_bits(depth_fetch(experiment->format, out[2 * i]));
     }
 }
 

@@ -38,8 +38,9 @@ size_t experiment_values(const Experiment *experiment)
     case EXPERIMENT_CLEAR:
         return (size_t)4 * (size_t)experiment->count;
     case EXPERIMENT_DEPTH_STORE:
-    case EXPERIMENT_DEPTH_FETCH:
         return EXPERIMENT_TEXELS;
+    case EXPERIMENT_DEPTH_FETCH:
+        return (size_t)2 * EXPERIMENT_TEXELS;
     case EXPERIMENT_RASTER:
         return (size_t)RASTER_FIELDS * RASTER_PIXELS;
     case EXPERIMENT_OVERLAP:

@@ -65,7 +65,8 @@ typedef enum ExperimentKind {
     EXPERIMENT_CLEAR,     /* 4 codes for each of `count` texels: a target cleared to a */
     EXPERIMENT_FETCH, /* 4 floats a texel: codes 4·i … 4·i + 3 of a format, modulo its size */
     EXPERIMENT_DEPTH_STORE, /* 1 code a texel: gl_FragDepth = a.x */
-    EXPERIMENT_DEPTH_FETCH, /* 1 float a texel: code a.x of d24 or d16, or depth a.x, fetched */
+    EXPERIMENT_DEPTH_FETCH, /* 2 values a texel: the code (d24, d16) or depth near a.x that could be
+                             * put into a texture, and the float that is fetched */
     EXPERIMENT_BLEND,       /* 4 codes a texel: a blended onto b, which is stored first */
     EXPERIMENT_RASTER,      /* RASTER_FIELDS values a pixel: `count` triangles, see below */
     EXPERIMENT_OVERLAP,     /* 1 count a pixel: how many of the triangles cover it */
