@@ -1,6 +1,7 @@
 #include "lab.h"
 
 #include "base/memory.h"
+#include "formats.h"
 #include "lab_draw.h"
 #include "number/op.h"
 
@@ -94,11 +95,7 @@ static Result fetch(GlLab *lab, const Experiment *experiment, uint32_t *out)
         }
     GLuint texture = lab_texture(format, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT);
     gl.TextureSubImage2D(texture, 0, 0, 0, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT,
-                         info->channels == 2 ? GL_RG : GL_RGBA,
-                         info->kind == KIND_HALF    ? GL_HALF_FLOAT
-                         : info->channel_bytes == 1 ? GL_UNSIGNED_BYTE
-                                                    : GL_UNSIGNED_SHORT,
-                         lab->pixels);
+                         formats_gl(format)->format, formats_gl(format)->type, lab->pixels);
     gl.BindTextureUnit(0, texture);
     Result result = lab_use(lab, COPY_BODY);
     if (result == RESULT_OK)
@@ -144,8 +141,7 @@ static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
                                           : op_bits(experiment->a[i][0]);
     }
     gl.TextureSubImage2D(depth.depth, 0, 0, 0, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT,
-                         GL_DEPTH_COMPONENT, format == FORMAT_D32F ? GL_FLOAT : GL_UNSIGNED_INT,
-                         words);
+                         GL_DEPTH_COMPONENT, formats_gl(format)->type, words);
     lab_read_depth(&depth, words);
     for (int i = 0; i < EXPERIMENT_TEXELS; i++)
         out[2 * i] = words[i];

@@ -1,30 +1,16 @@
 #include "lab_draw.h"
 
+#include "formats.h"
 #include "program.h"
 
 #include <stdio.h>
 #include <string.h>
 
-typedef struct Transfer {
-    GLenum internal, format, type;
-} Transfer;
-
-static const Transfer transfers[FORMAT_COUNT] = {
-    [FORMAT_RGBA32F] = {GL_RGBA32F, GL_RGBA, GL_FLOAT},
-    [FORMAT_RGBA16F] = {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT},
-    [FORMAT_RGBA16] = {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT},
-    [FORMAT_RGBA8] = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE},
-    [FORMAT_RG16] = {GL_RG16, GL_RG, GL_UNSIGNED_SHORT},
-    [FORMAT_D32F] = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT},
-    [FORMAT_D24] = {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
-    [FORMAT_D16] = {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
-};
-
 GLuint lab_texture(PixelFormat format, int width, int height)
 {
     GLuint texture;
     gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);
-    gl.TextureStorage2D(texture, 1, transfers[format].internal, width, height);
+    gl.TextureStorage2D(texture, 1, formats_gl(format)->internal, width, height);
     gl.TextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl.TextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;
@@ -70,22 +56,16 @@ void lab_target_destroy(LabTarget *target)
 
 void lab_read_depth(const LabTarget *target, uint32_t *out)
 {
-    const Transfer *transfer = &transfers[target->depth_format];
-    gl.ReadPixels(0, 0, target->width, target->height, transfer->format, transfer->type, out);
-    if (target->depth_format == FORMAT_D32F)
-        return;
-    /* The driver widens 24 or 16 bits to 32 by repeating the leading ones. */
-    int shift = target->depth_format == FORMAT_D24 ? 8 : 16;
-    size_t count = (size_t)target->width * (size_t)target->height;
-    for (size_t i = 0; i < count; i++)
-        out[i] >>= shift;
+    const GlFormat *names = formats_gl(target->depth_format);
+    gl.ReadPixels(0, 0, target->width, target->height, names->format, names->type, out);
+    formats_narrow_depth(target->depth_format, out, (size_t)target->width * (size_t)target->height);
 }
 
 void lab_read_color(const LabTarget *target, int i, void *out)
 {
-    const Transfer *transfer = &transfers[target->color_format];
+    const GlFormat *names = formats_gl(target->color_format);
     gl.NamedFramebufferReadBuffer(target->framebuffer, GL_COLOR_ATTACHMENT0 + (GLenum)i);
-    gl.ReadPixels(0, 0, target->width, target->height, transfer->format, transfer->type, out);
+    gl.ReadPixels(0, 0, target->width, target->height, names->format, names->type, out);
 }
 
 Result lab_use(GlLab *lab, const char *defines)

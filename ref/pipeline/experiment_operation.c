@@ -2,17 +2,6 @@
 
 #include "number/op.h"
 
-/* Exact; what has no fraction keeps its sign of zero. */
-static float floor_of(float x)
-{
-    x = op_flush(x);
-    if (!(op_abs(x) < 0x1p23f) || x == 0.0f)
-        return x;
-    float whole = (float)(int32_t)x;
-    whole = whole > x ? op_sub(whole, 1.0f) : whole;
-    return whole == 0.0f && x < 0.0f ? -0.0f : whole;
-}
-
 static void cross_of(const float a[4], const float b[4], float out[4])
 {
     for (int i = 0; i < 3; i++) {
@@ -72,8 +61,10 @@ static float channel(bool fused, Operation operation, float a, float b)
         return op_max(a, b);
     case OPERATION_CLAMP:
         return op_saturate(a);
+    case OPERATION_ABS:
+        return op_abs(a);
     case OPERATION_FLOOR:
-        return floor_of(a);
+        return op_floor(a);
     case OPERATION_EXP2:
         return op_exp2(fused, a);
     case OPERATION_LOG2:

@@ -35,7 +35,7 @@ static void field_pixel(void *context, const Setup *setup, int x, int y)
     const Vertex *const *v = setup->corner;
     Plane w_plane = setup_plane(setup, v[0]->window[3], v[1]->window[3], v[2]->window[3]);
     float w = plane_at(drawing->pass.fused, &w_plane, x, y);
-    float inverse_w = op_div(1.0f, w);
+    float inverse_w = fragment_inverse_w(&drawing->pass, setup, x, y);
     fields[RASTER_TRIANGLE] = drawing->triangle + 1;
     fields[RASTER_FRONT] = setup->front;
     fields[RASTER_Z] = op_bits(z);

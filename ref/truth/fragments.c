@@ -16,6 +16,7 @@ typedef struct Raster {
     const RenderDesc *desc;
     TileFragments *fragments;
     const Draw *draw;
+    const Material *material;
     uint32_t triangle;
     const Corner *corners[3];
     Coverage coverage;
@@ -137,6 +138,18 @@ static Result add_fragment(const Raster *raster, Fragment fragment, bool snapped
     return snapped ? append(fragments, fragment) : RESULT_OK;
 }
 
+/* Whether a masked material's texture has a hole there. Without a texture the view has left out
+ * what is masked away. */
+static bool is_cut_out(const Raster *raster, const double weight[3])
+{
+    const Material *material = raster->material;
+    if (material->alpha_mode != ALPHA_MASK || !material->base_color_texture)
+        return false;
+    MaterialSample sample;
+    soup_material(raster->soup, raster->triangle, weight, &sample);
+    return sample.base_color[3] < (double)material->alpha_cutoff;
+}
+
 /* (x, y): a pixel in the tile and in the coverage's bounds; y up. */
 static Result raster_pixel(const Raster *raster, int x, int y)
 {
@@ -151,7 +164,7 @@ static Result raster_pixel(const Raster *raster, int x, int y)
     bool exact_back = at == COVERAGE_INSIDE ? snapped_back : point.clockwise != draw->flipped;
     bool snapped = at >= COVERAGE_INSIDE_CLOSE && !(draw->cull_back && snapped_back);
     bool exact = (at == COVERAGE_INSIDE || point.inside) && !(draw->cull_back && exact_back);
-    if (!snapped && !exact)
+    if ((!snapped && !exact) || is_cut_out(raster, point.weight))
         return RESULT_OK;
     const TileFragments *fragments = raster->fragments;
     int row = raster->soup->view->height - 1 - y - fragments->y;
@@ -194,7 +207,9 @@ static Result raster_list(Raster *raster, uint32_t tile, bool transparent)
     Result result = RESULT_OK;
     for (uint64_t i = soup->tile_first[tile]; i < soup->tile_first[tile + 1]; i++) {
         raster->triangle = soup->tile_triangles[i];
-        raster->draw = soup_draw(soup, raster->triangle)->draw;
+        const SoupDraw *draw = soup_draw(soup, raster->triangle);
+        raster->draw = draw->draw;
+        raster->material = draw->material;
         if (raster->draw->transparent == transparent)
             result = raster_triangle(raster);
         if (result != RESULT_OK)

@@ -32,7 +32,7 @@ typedef struct Point {
 
 static Point point_setup(const Surface *surface)
 {
-    const Material *material = surface->material;
+    const MaterialSample *material = &surface->material;
     Point point = {.back_light = surface->back_light};
     const double to_eye[3] = {-surface->position[0], -surface->position[1], -surface->position[2]};
     normalize(surface->normal, point.N);
@@ -111,8 +111,7 @@ void radiance_shade(const View *view, const Surface *surface, double rgb[3])
     for (size_t light = 0; light < view->light_count; light++)
         add_light(&point, &view->lights[light], rgb);
     for (int i = 0; i < 3; i++)
-        rgb[i] += (double)view->ambient[i] * surface->material->base_color[i] *
-                  surface->material->occlusion;
+        rgb[i] += view->ambient[i] * surface->material.base_color[i] * surface->material.occlusion;
 }
 
 uint8_t radiance_display(double c)

@@ -3,6 +3,7 @@
 #define PEEL_REF_TRUTH_RADIANCE_H
 
 #include "frame/view.h"
+#include "ref/truth/texture.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -11,7 +12,7 @@
 typedef struct Surface {
     double position[3];
     double normal[3]; /* any length; normalised here */
-    const Material *material;
+    MaterialSample material;
     bool back_light; /* lights behind it add their specular lobe */
 } Surface;
 

@@ -93,6 +93,23 @@ void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3]
         out[i] = &soup->vertices[draw->first_vertex + index[i]];
 }
 
+void soup_material(const Soup *soup, uint32_t triangle, const double weight[3], MaterialSample *out)
+{
+    const SoupDraw *draw = soup_draw(soup, triangle);
+    const Mesh *mesh = draw->mesh;
+    double uv[2] = {0.0, 0.0};
+    if (mesh->uv) {
+        const uint32_t *index = &mesh->index[(size_t)(triangle - draw->first_triangle) * 3];
+        for (int i = 0; i < 2; i++) {
+            double p0 = mesh->uv[2 * (size_t)index[0] + i];
+            double p1 = mesh->uv[2 * (size_t)index[1] + i];
+            double p2 = mesh->uv[2 * (size_t)index[2] + i];
+            uv[i] = p0 + (weight[1] * (p1 - p0) + weight[2] * (p2 - p0));
+        }
+    }
+    texture_material(soup->textures, draw->material, uv, out);
+}
+
 /* ---- vertices ------------------------------------------------------------------------------- */
 
 static SoupVertex transform(const View *view, const Draw *draw, const float *position,
@@ -211,6 +228,7 @@ static uint32_t chunks(size_t count)
 Result soup_build(const Scene *scene, const View *view, Pool *pool, size_t max_bytes, Soup *out)
 {
     *out = (Soup){.view = view,
+                  .textures = scene->textures,
                   .tile_columns = (view->width + TRACE_TILE - 1) / TRACE_TILE,
                   .tile_rows = (view->height + TRACE_TILE - 1) / TRACE_TILE};
     Result result = collect_draws(scene, view, max_bytes, out);

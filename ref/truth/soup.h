@@ -10,6 +10,7 @@
 #include "frame/trace.h"
 #include "frame/view.h"
 #include "ref/truth/exact.h"
+#include "ref/truth/texture.h"
 
 typedef struct SoupVertex {
     Corner corner;
@@ -27,7 +28,8 @@ typedef struct SoupDraw {
 
 typedef struct Soup {
     const View *view;
-    SoupDraw *draws; /* draw_count of them, without those that have no triangle */
+    const Texture *textures; /* the scene's */
+    SoupDraw *draws;         /* draw_count of them, without those that have no triangle */
     size_t draw_count;
     SoupVertex *vertices;
     size_t vertex_count;
@@ -47,6 +49,9 @@ void soup_free(Soup *soup);
 const SoupDraw *soup_draw(const Soup *soup, uint32_t triangle);
 void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3]);
 uint32_t soup_primitive(const Soup *soup, uint32_t triangle); /* the frame's primitive id */
+/* The triangle's material where its corners have these weights (exact.h), textures included. */
+void soup_material(const Soup *soup, uint32_t triangle, const double weight[3],
+                   MaterialSample *out);
 
 /* NO_MEMORY and a message naming the need when more than limit bytes are needed. */
 Result soup_check_memory(size_t needed, size_t limit);

@@ -31,8 +31,7 @@ typedef struct Render {
 
 /* ---- shading and compositing ---------------------------------------------------------------- */
 
-static void shade_fragment(const Render *render, const Fragment *fragment, int x, int y,
-                           double rgb[3])
+static Surface find_surface(const Render *render, const Fragment *fragment, int x, int y)
 {
     const SoupVertex *vertices[3];
     soup_vertices(&render->soup, fragment->triangle, vertices);
@@ -40,9 +39,7 @@ static void shade_fragment(const Render *render, const Fragment *fragment, int x
     ExactPoint point;
     exact_at(corners, x, y, &point);
     bool turned = fragment->back && render->desc->normals == NORMALS_FACED;
-    const SoupDraw *draw = soup_draw(&render->soup, fragment->triangle);
-    Surface surface = {.material = draw->material,
-                       .back_light = render->desc->back_light && draw->draw->transparent};
+    Surface surface = {0};
     for (int i = 0; i < 3; i++) {
         double position = 0.0, normal = 0.0;
         for (int corner = 0; corner < 3; corner++) {
@@ -52,17 +49,22 @@ static void shade_fragment(const Render *render, const Fragment *fragment, int x
         surface.position[i] = position;
         surface.normal[i] = turned ? -normal : normal;
     }
-    radiance_shade(render->view, &surface, rgb);
+    soup_material(&render->soup, fragment->triangle, point.weight, &surface.material);
+    return surface;
 }
 
 /* Puts the fragment behind rgba: premultiplied colour so far, and transmittance. */
-static void blend_fragment(const Render *render, const Fragment *fragment, double alpha, int x,
-                           int y, double rgba[4])
+static void blend_fragment(const Render *render, const Fragment *fragment, int x, int y,
+                           double rgba[4])
 {
+    bool transparent = soup_draw(&render->soup, fragment->triangle)->draw->transparent;
+    Surface surface = find_surface(render, fragment, x, y);
+    surface.back_light = render->desc->back_light && transparent;
+    double alpha = transparent ? surface.material.base_color[3] : 1.0;
     if (alpha <= (double)SHADING_ALPHA_TEST)
         return;
     double rgb[3];
-    shade_fragment(render, fragment, x, y, rgb);
+    radiance_shade(render->view, &surface, rgb);
     for (int i = 0; i < 3; i++)
         rgba[i] += rgba[3] * alpha * rgb[i];
     rgba[3] *= 1.0 - alpha;
@@ -74,14 +76,11 @@ static void composite(const Render *render, const TileFragments *tile, int pixel
 {
     rgba[0] = rgba[1] = rgba[2] = 0.0;
     rgba[3] = 1.0;
-    for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1] && rgba[3] > 0.0; i++) {
-        const Fragment *fragment = &tile->sorted[i];
-        double alpha = soup_draw(&render->soup, fragment->triangle)->material->base_color[3];
-        blend_fragment(render, fragment, alpha, x, y, rgba);
-    }
+    for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1] && rgba[3] > 0.0; i++)
+        blend_fragment(render, &tile->sorted[i], x, y, rgba);
     const Fragment *opaque = &tile->opaque[pixel];
     if (opaque->triangle != FRAGMENTS_NO_TRIANGLE && rgba[3] > 0.0)
-        blend_fragment(render, opaque, 1.0, x, y, rgba);
+        blend_fragment(render, opaque, x, y, rgba);
     for (int i = 0; i < 3; i++)
         rgba[i] += rgba[3] * render->view->background[i];
     rgba[3] = 1.0 - rgba[3];

@@ -4,7 +4,11 @@
  * and none of their rasterizing, sorting, shading or blending. Coverage follows the GL contract
  * (clipped pieces snapped to 1/256 pixel); depth and attributes are those of the exact, unclipped,
  * unsnapped triangle at the pixel's centre. No pass limit, no stored formats: desc's method,
- * passes, depth, accum, gbuffer, peel_test, ggx, opaque_blend and unfused change nothing.
+ * passes, depth, accum, gbuffer, position, peel_test, ggx, opaque_blend and unfused change nothing.
+ *
+ * Textures are sampled at exact, perspective-correct uv. At the borders of nearest texels, of a
+ * mask's holes, and where alpha crosses SHADING_ALPHA_TEST, the picture jumps; a pixel whose centre
+ * lies within single precision of one may be on the other side of it in the pipelines.
  *
  * It does not resolve depths closer than double precision: surfaces that coincide only in exact
  * arithmetic, not in double, come in the order of their rounding (exact.h states its size).

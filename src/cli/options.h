@@ -28,7 +28,7 @@ typedef struct RenderOptions {
     double opacity, background[3];
     FmaChoice fma;
     /* −1: as the profile has it; else the value in RenderDesc. */
-    int cull, normals, ggx, back_light, depth_func, peel_test, gbuffer, depth, accum;
+    int cull, normals, ggx, back_light, depth_func, peel_test, gbuffer, position, depth, accum;
 } RenderOptions;
 
 /* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */

@@ -87,6 +87,7 @@ enum {
     KEY_DEPTH,
     KEY_ACCUM,
     KEY_GBUFFER,
+    KEY_POSITION,
     KEY_FMA,
     KEY_GL,
     KEY_SIMD,
@@ -130,7 +131,14 @@ static const struct argp_option render_options[] = {
     {"depth", KEY_DEPTH, "FORMAT", 0, "d32f (default), d24 or d16", 1},
     {"accum", KEY_ACCUM, "FORMAT", 0, "rgba32f (default), rgba16f, rgba16 or rgba8", 1},
     {"gbuffer", KEY_GBUFFER, "SET", 0,
-     "full (default: all 32-bit floats) or seed (the original's formats)", 1},
+     "full (default: all 32-bit floats), seed (the original's formats) or compact (octahedral "
+     "normals, 8-bit material, no position)",
+     1},
+    {"position", KEY_POSITION, "SOURCE", 0,
+     "Positions for lighting: from the G-buffer's buffer (default) or reconstruct (from depth; "
+     "with "
+     "a compact G-buffer always)",
+     1},
     {"fma", KEY_FMA, "on|off", 0,
      "Fused multiply-add in fixed-function arithmetic (default: as the GL driver does; without gl, "
      "on)",
@@ -229,7 +237,8 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     static const char *const functions[] = {"less", "lequal"};
     static const char *const ranges[] = {"gl", "zero-one", "reversed"};
     static const char *const tests[] = {"stored", "raw"};
-    static const char *const gbuffers[] = {"full", "seed"};
+    static const char *const gbuffers[] = {"full", "seed", "compact"};
+    static const char *const positions[] = {"buffer", "reconstruct"};
     static const PixelFormat depth_formats[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
     static const char *const depths[] = {"d32f", "d24", "d16"};
     static const PixelFormat accum_formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
@@ -278,8 +287,12 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
         options->peel_test = choice;
         break;
     case KEY_GBUFFER:
-        error = parse_choice("--gbuffer", argument, gbuffers, 2, &choice);
+        error = parse_choice("--gbuffer", argument, gbuffers, 3, &choice);
         options->gbuffer = choice;
+        break;
+    case KEY_POSITION:
+        error = parse_choice("--position", argument, positions, 2, &choice);
+        options->position = choice;
         break;
     case KEY_DEPTH:
         error = parse_choice("--depth", argument, depths, 3, &choice);

@@ -18,6 +18,7 @@ static const OperationInfo operations[OPERATION_COUNT] = {
     [OPERATION_MIN] = {"r = min(a, b);", 2, true},
     [OPERATION_MAX] = {"r = max(a, b);", 2, true},
     [OPERATION_CLAMP] = {"r = clamp(a, 0.0, 1.0);", 1, true},
+    [OPERATION_ABS] = {"r = abs(a);", 1, true},
     [OPERATION_FLOOR] = {"r = floor(a);", 1, true},
     [OPERATION_SELECT] = {"precise float s = a.x < b.x ? 1.0 : b.x; r = vec4(s);", 2, false},
     [OPERATION_EXP2] = {"r = exp2(a);", 1, true},

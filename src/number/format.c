@@ -4,7 +4,7 @@
 
 #include <assert.h>
 
-static const FormatInfo infos[FORMAT_COUNT] = {
+static const FormatInfo infos[FORMAT_COUNT + 1] = {
     [FORMAT_RGBA32F] = {"rgba32f", KIND_FLOAT, 4, 4, 0},
     [FORMAT_RGBA16F] = {"rgba16f", KIND_HALF, 4, 2, 0},
     [FORMAT_RGBA16] = {"rgba16", KIND_UNORM, 4, 2, 65535},

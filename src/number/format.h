@@ -18,8 +18,8 @@ typedef enum PixelFormat {
     FORMAT_D24,    /* window depth as a 24-bit unorm in a uint32_t */
     FORMAT_D16,    /* as a 16-bit unorm, in a uint32_t too */
     FORMAT_R32UI,  /* an index; UINT32_MAX is none */
-    FORMAT_NONE,   /* of a buffer that is not stored: no bytes */
-    FORMAT_COUNT
+    FORMAT_COUNT,
+    FORMAT_NONE = FORMAT_COUNT /* of a buffer that is not stored: no bytes */
 } PixelFormat;
 
 typedef enum FormatKind {

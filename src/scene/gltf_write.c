@@ -2,6 +2,9 @@
 #include "base/memory.h"
 #include "scene/gltf.h"
 #include "scene/gltf_file.h"
+#include "scene/gltf_json.h"
+#include "scene/gltf_texture_write.h"
+#include "scene/texture.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -12,11 +15,6 @@
 enum {
     TARGET_VERTICES = 34962,
     TARGET_INDICES = 34963
-};
-enum {
-    TYPE_UINT16 = 5123,
-    TYPE_UINT32 = 5125,
-    TYPE_FLOAT = 5126
 };
 
 /* A material on a mesh is a mesh of its own in glTF; its accessors are shared. */
@@ -29,6 +27,7 @@ typedef struct Writer {
     unsigned char *bytes; /* the one buffer */
     size_t byte_count, byte_room;
     json_t *views, *accessors;
+    GltfTextureArrays textures;
     uint32_t *first_accessor; /* per mesh; UINT32_MAX where no instance uses it */
     Pair *pairs;
     size_t pair_count, pair_room;
@@ -211,6 +210,17 @@ static json_t *mesh_json(Writer *writer, const Pair *pair)
     return mesh;
 }
 
+/* number: 1 + index into the scene's textures, 0 for none. */
+static void put_texture(Writer *writer, json_t *object, const char *key, uint32_t number,
+                        TextureEncoding encoding)
+{
+    if (!number)
+        return;
+    json_t *info = json_object();
+    put_integer(writer, info, "index", writer->textures.index[encoding][number - 1] - 1);
+    put(writer, object, key, info);
+}
+
 static json_t *material_json(Writer *writer, const Material *material)
 {
     static const char *const modes[] = {"OPAQUE", "MASK", "BLEND"};
@@ -219,6 +229,10 @@ static json_t *material_json(Writer *writer, const Material *material)
     put(writer, metallic_roughness, "baseColorFactor", floats(writer, material->base_color, 4));
     put(writer, metallic_roughness, "metallicFactor", json_real((double)material->metallic));
     put(writer, metallic_roughness, "roughnessFactor", json_real((double)material->roughness));
+    put_texture(writer, metallic_roughness, "baseColorTexture", material->base_color_texture,
+                TEXTURE_SRGB);
+    put_texture(writer, metallic_roughness, "metallicRoughnessTexture",
+                material->metallic_roughness_texture, TEXTURE_LINEAR);
     put(writer, json, "pbrMetallicRoughness", metallic_roughness);
     put(writer, json, "alphaMode", json_string(modes[material->alpha_mode]));
     if (material->alpha_mode == ALPHA_MASK)
@@ -378,6 +392,9 @@ static json_t *document(Writer *writer)
         append(writer, cameras, camera_json(writer, &scene->cameras[i]));
     put_array(writer, root, "meshes", meshes);
     put_array(writer, root, "materials", materials);
+    put_array(writer, root, "textures", json_incref(writer->textures.textures));
+    put_array(writer, root, "samplers", json_incref(writer->textures.samplers));
+    put_array(writer, root, "images", json_incref(writer->textures.images));
     put_array(writer, root, "cameras", cameras);
     put_array(writer, root, "accessors", writer->accessors);
     put_array(writer, root, "bufferViews", writer->views);
@@ -393,7 +410,8 @@ static void put_buffer(Writer *writer, json_t *root, bool binary)
     json_t *buffer = json_object(), *buffers = json_array();
     put_integer(writer, buffer, "byteLength", writer->byte_count);
     if (!binary) {
-        char *uri = gltf_file_data_uri(writer->bytes, writer->byte_count);
+        char *uri =
+            gltf_file_data_uri("application/octet-stream", writer->bytes, writer->byte_count);
         put(writer, buffer, "uri", uri ? json_string(uri) : NULL);
         free(uri);
     }
@@ -442,7 +460,10 @@ Result gltf_write(const Scene *scene, const char *path)
     if (!writer.first_accessor)
         return RESULT_NO_MEMORY;
     memset(writer.first_accessor, 0xff, scene->mesh_count * sizeof *writer.first_accessor);
-    Result result = write_document(&writer, path, kind == 1);
+    Result result = gltf_texture_write(scene, path, &writer.textures);
+    if (!result)
+        result = write_document(&writer, path, kind == 1);
+    gltf_texture_write_free(&writer.textures);
     free(writer.first_accessor);
     free(writer.pairs);
     free(writer.bytes);

@@ -66,11 +66,10 @@ static double largest_error(GgxForm ggx)
         double rgb[3];
         highlight(&random, &texel, &light);
         View view = one_light(&light);
-        Material material = {.base_color = {0.9f, 0.5f, 0.1f, 1},
-                             .roughness = texel.material[0],
-                             .metallic = 1,
-                             .occlusion = 1};
-        Surface surface = {.material = &material};
+        Surface surface = {.material = {.base_color = {0.9f, 0.5f, 0.1f, 1},
+                                        .roughness = texel.material[0],
+                                        .metallic = 1,
+                                        .occlusion = 1}};
         for (int k = 0; k < 3; k++) {
             surface.position[k] = texel.position[k];
             surface.normal[k] = texel.normal[k];

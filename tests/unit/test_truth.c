@@ -248,8 +248,9 @@ START_TEST(test_shading_place)
     for (int i = 0; i < 96 * 96; i++) {
         double x = (i % 96 + 0.5) / 48 - 1, y = 1 - (i / 96 + 0.5) / 48;
         double depth = 2 / (1 + y / 4); /* of the plane along the ray (x, y, −1) */
-        Surface surface = {
-            {x * depth, y * depth, -depth}, {x * depth, y * depth, 4}, &stage->materials[0], false};
+        Surface surface = {.position = {x * depth, y * depth, -depth},
+                           .normal = {x * depth, y * depth, 4}};
+        texture_material(NULL, &stage->materials[0], (const double[]){0, 0}, &surface.material);
         double rgb[3];
         radiance_shade(&view, &surface, rgb);
         const float *final = image_pixel(&frame.final, i % 96, i / 96);

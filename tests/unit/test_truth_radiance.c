@@ -7,12 +7,12 @@
 
 static const double pi = (double)SHADING_PI;
 
-static Material material(float roughness, float metallic)
+static MaterialSample material(float roughness, float metallic)
 {
-    return (Material){.base_color = {0.5f, 0.25f, 1, 1},
-                      .roughness = roughness,
-                      .metallic = metallic,
-                      .occlusion = 0.5f};
+    return (MaterialSample){.base_color = {0.5f, 0.25f, 1, 1},
+                            .roughness = roughness,
+                            .metallic = metallic,
+                            .occlusion = 0.5f};
 }
 
 /* Light, eye and normal in one line: every cosine is 1, Fresnel is F0, GGX is 1/(π a²). */
@@ -23,8 +23,8 @@ START_TEST(test_head_on)
         double distance = i & 4 ? 2.0 : 0.5; /* from light to surface */
         ViewLight light = {{0, 0, (float)(distance - 3)}, {1, 2, 4}, {1, 0.5f, 0.25f}};
         View view = {.light_count = 1, .lights = &light, .ambient = {0.25f, 0.25f, 0.5f}};
-        Material m = material(roughness, metallic);
-        Surface surface = {{0, 0, -3}, {0, 0, 7}, &m, false};
+        MaterialSample m = material(roughness, metallic);
+        Surface surface = {{0, 0, -3}, {0, 0, 7}, m, false};
         double rgb[3], a2 = pow(roughness, 4);
         radiance_shade(&view, &surface, rgb);
         double attenuation = 1 / (1 + 0.5 * distance + 0.25 * distance * distance);
@@ -47,8 +47,8 @@ START_TEST(test_bisecting_normal)
 {
     ViewLight light = {{5, 0, -3}, {2, 2, 2}, {0, 0, 1}};
     View view = {.light_count = 1, .lights = &light};
-    Material m = material(0.5f, 0);
-    Surface surface = {{0, 0, -3}, {1, 0, 1}, &m, false};
+    MaterialSample m = material(0.5f, 0);
+    Surface surface = {{0, 0, -3}, {1, 0, 1}, m, false};
     double rgb[3], c = sqrt(0.5), k = 1.5 * 1.5 / 8, g = c / (c * (1 - k) + k);
     radiance_shade(&view, &surface, rgb);
     for (int i = 0; i < 3; i++) {
@@ -64,8 +64,8 @@ END_TEST
 START_TEST(test_unlit)
 {
     ViewLight behind = {{0, 0, -9}, {100, 100, 100}, {1, 0, 0}};
-    Material m = material(0.5f, 0);
-    Surface surface = {{0, 0, -3}, {0, 0, 1}, &m, false};
+    MaterialSample m = material(0.5f, 0);
+    Surface surface = {{0, 0, -3}, {0, 0, 1}, m, false};
     for (size_t count = 0; count < 2; count++) {
         View view = {.light_count = count, .lights = &behind, .ambient = {1, 1, 2}};
         double rgb[3];
@@ -85,8 +85,8 @@ START_TEST(test_back_light)
     front.position[2] = -2.0f; /* mirrored at z = −3 */
     View view_behind = {.light_count = 1, .lights = &behind},
          view_front = {.light_count = 1, .lights = &front};
-    Material m = material(0.4f, 1), rough = material(0.4f, 0);
-    Surface surface = {{0, 0, -3}, {0, 0, 1}, &m, true};
+    MaterialSample m = material(0.4f, 1), rough = material(0.4f, 0);
+    Surface surface = {{0, 0, -3}, {0, 0, 1}, m, true};
     double back[3], ahead[3], without[3];
     radiance_shade(&view_behind, &surface, back);
     radiance_shade(&view_front, &surface, ahead);
@@ -99,7 +99,7 @@ START_TEST(test_back_light)
     ck_assert_mem_eq(without, ahead, sizeof ahead);
     radiance_shade(&view_behind, &surface, without);
     ck_assert_double_eq(without[0], 0.0);
-    surface = (Surface){{0, 0, -3}, {0, 0, 1}, &rough, true};
+    surface = (Surface){{0, 0, -3}, {0, 0, 1}, rough, true};
     radiance_shade(&view_behind, &surface, back);
     radiance_shade(&view_front, &surface, ahead);
     const double L[3] = {1.5 / sqrt(3.5), 0.5 / sqrt(3.5), 1 / sqrt(3.5)};
@@ -119,8 +119,8 @@ START_TEST(test_guards)
     for (int i = 0; i < 16; i++) {
         ViewLight light = {{0, 0, i & 1 ? -3 : 0}, {1, 1, 1}, {0, 0, 1}};
         View view = {.light_count = 1, .lights = &light};
-        Material m = material(i & 2 ? 0.0f : 1.0f, 0);
-        Surface surface = {{0, 0, i & 4 ? 0 : -3}, {0, 0, i & 8 ? 0 : 1}, &m, false};
+        MaterialSample m = material(i & 2 ? 0.0f : 1.0f, 0);
+        Surface surface = {{0, 0, i & 4 ? 0 : -3}, {0, 0, i & 8 ? 0 : 1}, m, false};
         double rgb[3];
         radiance_shade(&view, &surface, rgb);
         for (int k = 0; k < 3; k++)
@@ -129,9 +129,9 @@ START_TEST(test_guards)
     /* Roughness 0 means SHADING_ROUGHNESS_MIN. */
     ViewLight light = {{1, 0, 0}, {1, 1, 1}, {0, 0, 1}};
     View view = {.light_count = 1, .lights = &light};
-    Material smooth = material(0, 0), least = material(SHADING_ROUGHNESS_MIN, 0);
-    Surface a = {{0, 0, -3}, {0.1, 0, 1}, &smooth, false},
-            b = {{0, 0, -3}, {0.1, 0, 1}, &least, false};
+    MaterialSample smooth = material(0, 0), least = material(SHADING_ROUGHNESS_MIN, 0);
+    Surface a = {{0, 0, -3}, {0.1, 0, 1}, smooth, false},
+            b = {{0, 0, -3}, {0.1, 0, 1}, least, false};
     double rgb_a[3], rgb_b[3];
     radiance_shade(&view, &a, rgb_a);
     radiance_shade(&view, &b, rgb_b);
