@@ -69,6 +69,12 @@ size_t driver_rule_count(void)
     return count;
 }
 
+const char *driver_rule_id(size_t index)
+{
+    size_t count;
+    return driver_rules(&count)[index].id;
+}
+
 Result driver_run_rule(size_t index, Lab *model, Lab *driver, Renderer renderer, DriverRule *out)
 {
     size_t count;

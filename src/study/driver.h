@@ -60,6 +60,7 @@ void driver_free(DriverReport *report);
 
 /* One of them, for a test: index below driver_rule_count. */
 size_t driver_rule_count(void);
+const char *driver_rule_id(size_t index); /* static */
 Result driver_run_rule(size_t index, Lab *model, Lab *driver, Renderer renderer, DriverRule *out);
 
 const char *driver_verdict_name(DriverVerdict verdict); /* "exact", "differs", … */
