@@ -2,7 +2,7 @@
  * display, so that a graphics processor's driver is found, too. */
 #include "platform.h"
 
-#define EGL_NO_X11
+#define EGL_NO_PLATFORM_SPECIFIC_TYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
