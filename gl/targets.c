@@ -1,22 +1,11 @@
 #include "targets.h"
 
 #include "base/memory.h"
+#include "formats.h"
 #include "readback.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static const GLenum internal_formats[FORMAT_COUNT] = {
-    [FORMAT_RGBA32F] = GL_RGBA32F,
-    [FORMAT_RGBA16F] = GL_RGBA16F,
-    [FORMAT_RGBA16] = GL_RGBA16,
-    [FORMAT_RGBA8] = GL_RGBA8,
-    [FORMAT_RG16] = GL_RG16,
-    [FORMAT_D32F] = GL_DEPTH_COMPONENT32F,
-    [FORMAT_D24] = GL_DEPTH_COMPONENT24,
-    [FORMAT_D16] = GL_DEPTH_COMPONENT16,
-    [FORMAT_R32UI] = GL_R32UI,
-};
 
 static void choose_formats(const RenderDesc *desc, Targets *out)
 {
@@ -80,7 +69,7 @@ static GLuint make_texture(const Targets *targets, PixelFormat format)
 {
     GLuint texture;
     gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);
-    gl.TextureStorage2D(texture, 1, internal_formats[format], targets->width, targets->height);
+    gl.TextureStorage2D(texture, 1, formats_gl(format)->internal, targets->width, targets->height);
     gl.TextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl.TextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;

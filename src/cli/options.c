@@ -187,12 +187,17 @@ Result options_load_scene(RenderOptions *options, Scene *out)
     if (options->accum >= 0)
         options->desc.accum = (PixelFormat)options->accum;
     options->desc.unfused = options->fma == FMA_OFF;
-    /* Mesa reads it at its first call, once per process: hides FMA (and AVX) from its compiler. */
-    if (options->fma == FMA_OFF)
-        setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 1);
+    options_apply_fma(options->fma);
     if (result != RESULT_OK)
         scene_free(out);
     return result;
+}
+
+void options_apply_fma(FmaChoice fma)
+{
+    /* Mesa reads it at its first call, once per process: hides FMA (and AVX) from its compiler. */
+    if (fma == FMA_OFF)
+        setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 1);
 }
 
 Result options_check_fma(const RenderOptions *options)

@@ -2,6 +2,7 @@
 #include "cli/options.h"
 
 #include "frame/method.h"
+#include "gl/context.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -48,7 +49,7 @@ static error_t parse_memory(const char *text, RenderDesc *desc)
     return 0;
 }
 
-static error_t parse_count(const char *name, const char *text, int low, int high, int *out)
+error_t options_count(const char *name, const char *text, int low, int high, int *out)
 {
     long long value;
     if (!options_integer(text, low, high, &value))
@@ -88,6 +89,7 @@ enum {
     KEY_GBUFFER,
     KEY_POSITION,
     KEY_FMA,
+    KEY_GL,
     KEY_SIMD,
     KEY_THREADS,
     KEY_MEMORY,
@@ -141,6 +143,7 @@ static const struct argp_option render_options[] = {
      "Fused multiply-add in fixed-function arithmetic (default: as the GL driver does; without gl, "
      "on)",
      1},
+    {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 1},
     {"simd", KEY_SIMD, "NAME", 0,
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
     {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
@@ -183,6 +186,25 @@ static error_t parse_choice(const char *option, const char *text, const char *co
     return options_error("%s %s: expected %s", option, text, expected);
 }
 
+error_t options_fma(const char *text, FmaChoice *out)
+{
+    static const char *const names[] = {"on", "off"};
+    int choice = 0;
+    error_t error = parse_choice("--fma", text, names, 2, &choice);
+    *out = choice == 0 ? FMA_ON : FMA_OFF;
+    return error;
+}
+
+error_t options_gl(const char *text)
+{
+    static const char *const names[] = {"osmesa", "egl"};
+    int choice = 0;
+    error_t error = parse_choice("--gl", text, names, 2, &choice);
+    if (error == 0)
+        context_choose(choice == 0 ? CONTEXT_OSMESA : CONTEXT_EGL);
+    return error;
+}
+
 static error_t parse_method(const char *text, RenderDesc *desc)
 {
     const MethodInfo *method = method_find(text);
@@ -198,7 +220,7 @@ static error_t parse_method(const char *text, RenderDesc *desc)
 
 static error_t parse_lights(const char *text, RenderDesc *desc)
 {
-    error_t error = parse_count("--lights", text, 0, 1 << 20, &desc->lights);
+    error_t error = options_count("--lights", text, 0, 1 << 20, &desc->lights);
     if (desc->lights == 0)
         desc->lights = -1; /* none: 0 means all in a RenderDesc */
     return error;
@@ -233,9 +255,9 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
         options->seed_profile = choice == 1;
         break;
     case KEY_FMA:
-        error = parse_choice("--fma", argument, switches, 2, &choice);
-        options->fma = choice == 0 ? FMA_ON : FMA_OFF;
-        break;
+        return options_fma(argument, &options->fma);
+    case KEY_GL:
+        return options_gl(argument);
     case KEY_CULL:
         error = parse_choice("--cull", argument, culls, 3, &choice);
         options->cull = choice;
@@ -314,7 +336,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
     case KEY_PASSES:
         return parse_passes(argument, desc);
     case KEY_THREADS:
-        return parse_count("--threads", argument, 1, 256, &desc->threads);
+        return options_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:
         return parse_memory(argument, desc);
     case ARGP_KEY_ARG:

@@ -115,6 +115,11 @@ uint16_t unorm16_from_float(float x)
     return (uint16_t)op_round_to_int(op_mul(op_saturate(x), 65535.0f));
 }
 
+uint16_t unorm16_from_clear(float x)
+{
+    return (uint16_t)op_add(op_mul(op_saturate(x), 65535.0f), 0.5f);
+}
+
 float unorm16_to_float(uint16_t i)
 {
     return op_mul((float)i, (float)(1.0 / 65535.0));

@@ -58,6 +58,8 @@ uint8_t unorm8_from_float(float x);
 float unorm8_to_float(uint8_t i);
 
 uint16_t unorm16_from_float(float x);
+/* A cleared RGBA16 or RG16: ties of the product are rounded up, not to even. */
+uint16_t unorm16_from_clear(float x);
 float unorm16_to_float(uint16_t i);
 
 /* Half: truncated toward zero, finite overflow to 65504 (0x7bff), infinity kept, denormals made;
