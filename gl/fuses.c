@@ -35,8 +35,8 @@ static Result render(Context *context, float depth[SIDE * SIDE])
              2.0 * (double)depth_window[0] - 1.0, 2.0 * (double)depth_window[1] - 1.0,
              2.0 * (double)depth_window[2] - 1.0);
     GLuint program, texture, framebuffer, vertex_array;
-    Result result =
-        program_build("arithmetic", defines, shader_fuses_vert, shader_fuses_frag, &program);
+    const char *fragment = shader_fuses_frag;
+    Result result = program_build("arithmetic", defines, shader_fuses_vert, &fragment, 1, &program);
     if (result != RESULT_OK)
         return result;
     gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);

@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-static Result read_result(Passes *passes, TraceSink *trace, Frame *out)
+static Result read_result(Passes *passes, Frame *out)
 {
     const Targets *targets = &passes->targets;
     Result result = image_create(targets->width, targets->height, FORMAT_RGBA32F, &out->final);
@@ -23,7 +23,7 @@ static Result read_result(Passes *passes, TraceSink *trace, Frame *out)
     result = context_check(passes->context, "frame");
     if (result != RESULT_OK)
         return result;
-    return trace_put(trace, "display", out->peels + 2, FORMAT_RGBA8, targets->width,
+    return trace_put(passes->trace, "display", out->peels + 2, FORMAT_RGBA8, targets->width,
                      targets->height, out->display.pixels);
 }
 
@@ -35,7 +35,7 @@ static void describe_driver(Frame *out)
 }
 
 /* One row per method: see frame/method.h. */
-static Result (*const methods[METHOD_COUNT])(Passes *passes, TraceSink *trace, Frame *out) = {
+static Result (*const methods[METHOD_COUNT])(Passes *passes, Frame *out) = {
     [METHOD_PEEL] = gl_peel,
 };
 
@@ -55,13 +55,13 @@ static __attribute__((noinline)) Result render_in(Context *context, const Scene 
     out->fused = mode == FUSES_YES;
     Clock start = clock_now();
     Passes passes;
-    result = passes_create(context, scene, desc, view, &passes);
+    result = passes_create(context, scene, desc, view, trace, &passes);
     if (result != RESULT_OK)
         return result;
-    result = methods[desc->method](&passes, trace, out);
+    result = methods[desc->method](&passes, out);
     if (result == RESULT_OK) {
         passes_resolve(&passes);
-        result = read_result(&passes, trace, out);
+        result = read_result(&passes, out);
     }
     out->buffer_bytes =
         passes.targets.bytes + passes.meshes.bytes + passes.lights.bytes + passes.textures.bytes;

@@ -79,8 +79,9 @@ Result lab_use(GlLab *lab, const char *defines)
     lab->next_program = (lab->next_program + 1) % LAB_PROGRAMS;
     gl.DeleteProgram(slot->program);
     snprintf(slot->defines, sizeof slot->defines, "%s", defines);
-    Result result = program_build("experiment", defines, shader_experiment_vert,
-                                  shader_experiment_frag, &slot->program);
+    const char *fragment = shader_experiment_frag;
+    Result result =
+        program_build("experiment", defines, shader_experiment_vert, &fragment, 1, &slot->program);
     if (result == RESULT_OK)
         gl.UseProgram(slot->program);
     return result;

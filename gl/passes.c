@@ -1,10 +1,13 @@
 #include "passes.h"
 
+#include "base/memory.h"
 #include "program.h"
+#include "readback.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
-/* Uniform locations of shaders/geometry.*.glsl. */
+/* Uniform locations of the shaders. */
 enum {
     UNIFORM_MODEL_VIEW,
     UNIFORM_NORMAL_MATRIX,
@@ -16,92 +19,127 @@ enum {
     UNIFORM_BASE_COLOR_SAMPLER,
     UNIFORM_METALLIC_ROUGHNESS_SAMPLER,
     UNIFORM_ALPHA_CUTOFF,
+    UNIFORM_AMBIENT = 16,
+    UNIFORM_DEPTH_TO_Z,
+    UNIFORM_RAY,
+    UNIFORM_BACKGROUND = 0 /* of resolve.frag, which has no mesh */
 };
 
-enum {
-    UNIFORM_AMBIENT = 0,
-    UNIFORM_DEPTH_TO_Z = 1,
-    UNIFORM_RAY = 2,
-    UNIFORM_BACKGROUND = 0
-};
+/* ---- programs ---- */
 
-static Result build_geometry(const Passes *passes, GeometryPass pass, GLuint *out)
+/* The switches that follow from desc, the formats and the scene. */
+static void write_defines(const Passes *passes, const char *defines, char *out, size_t size)
 {
-    const RenderDesc *desc = passes->desc;
-    const int *attachment = passes->targets.attachment;
-    static const char *const names[] = {"opaque geometry", "first peel", "next peel"};
-    static const char *const stages[] = {"", "#define TRANSPARENT\n",
-                                         "#define TRANSPARENT\n#define NEXT_PEEL\n"};
     static const char *const outputs[GBUFFER_TARGETS] = {"NORMAL", "POSITION", "DIFFUSE",
                                                          "MATERIAL"};
-    PixelFormat depth = render_desc_depth(desc);
-    char defines[512], *at = defines;
+    const RenderDesc *desc = passes->desc;
+    const Targets *targets = &passes->targets;
+    char *at = out;
     for (int i = 0; i < GBUFFER_TARGETS; i++)
-        if (attachment[i] >= 0)
-            at += sprintf(at, "#define OUT_%s %d\n", outputs[i], attachment[i]);
-    snprintf(at, sizeof defines - (size_t)(at - defines), "%s%s%s%s%s%s%s", stages[pass],
-             passes->textures.count > 0 ? "#define TEXTURED\n" : "",
-             passes->targets.color_format[GBUFFER_NORMAL] == FORMAT_RG16 ? "#define OCTAHEDRAL\n"
-                                                                         : "",
-             desc->depth_range == DEPTH_RANGE_REVERSED ? "#define REVERSED\n" : "",
-             desc->normals == NORMALS_FACED ? "#define FACED\n" : "",
-             desc->peel_test == PEEL_TEST_RAW ? "#define TEST_RAW\n" : "",
-             depth == FORMAT_D24   ? "#define DEPTH_24\n"
-             : depth == FORMAT_D16 ? "#define DEPTH_16\n"
-                                   : "");
-    return program_build(names[pass], defines, shader_geometry_vert, shader_geometry_frag, out);
+        if (targets->attachment[i] >= 0)
+            at += sprintf(at, "#define OUT_%s %d\n", outputs[i], targets->attachment[i]);
+    at += sprintf(at, "#define LIGHT_COUNT %zu\n", passes->view->light_count);
+    const struct {
+        bool on;
+        const char *name;
+    } switches[] = {
+        {passes->textures.count > 0, "TEXTURED"},
+        {targets->color_format[GBUFFER_NORMAL] == FORMAT_RG16, "OCTAHEDRAL"},
+        {targets->color_format[GBUFFER_POSITION] == FORMAT_NONE, "RECONSTRUCT"},
+        {desc->depth_range == DEPTH_RANGE_REVERSED, "REVERSED"},
+        {desc->normals == NORMALS_FACED, "FACED"},
+        {desc->peel_test == PEEL_TEST_RAW, "TEST_RAW"},
+        {targets->depth_format == FORMAT_D24, "DEPTH_24"},
+        {targets->depth_format == FORMAT_D16, "DEPTH_16"},
+        {passes->lights.storage, "LIGHTS_STORAGE"},
+        {desc->accum == FORMAT_RGBA8, "ACCUM_8"},
+        {desc->ggx == GGX_STABLE, "GGX_STABLE"},
+    };
+    for (size_t i = 0; i < sizeof switches / sizeof *switches; i++)
+        if (switches[i].on)
+            at += sprintf(at, "#define %s\n", switches[i].name);
+    snprintf(at, size - (size_t)(at - out), "%s", defines);
 }
 
-static Result build_lighting(const Passes *passes, LightingPass pass, GLuint *out)
+/* What no draw changes. */
+static void set_constants(const Passes *passes, const PassesSource *source, GLuint program)
 {
-    static const char *const names[] = {"opaque lighting", "peel lighting"};
-    const RenderDesc *desc = passes->desc;
-    const PixelFormat *formats = passes->targets.color_format;
-    char defines[256];
-    snprintf(defines, sizeof defines, "#define LIGHT_COUNT %zu\n%s%s%s%s%s%s",
-             passes->view->light_count,
-             formats[GBUFFER_NORMAL] == FORMAT_RG16 ? "#define OCTAHEDRAL\n" : "",
-             formats[GBUFFER_POSITION] == FORMAT_NONE ? "#define RECONSTRUCT\n" : "",
-             passes->lights.storage ? "#define LIGHTS_STORAGE\n" : "",
-             desc->accum == FORMAT_RGBA8 ? "#define ACCUM_8\n" : "",
-             desc->ggx == GGX_STABLE ? "#define GGX_STABLE\n" : "",
-             desc->back_light && pass == LIGHTING_PEEL ? "#define BACK_LIGHT\n" : "");
-    return program_build(names[pass], defines, shader_fullscreen_vert, shader_lighting_frag, out);
+    const View *view = passes->view;
+    const Unprojection *back = &view->unprojection;
+    const float depth_to_z[] = {back->depth_scale, back->depth_offset, back->inverse_far};
+    const float ray[] = {back->ray_scale[0], back->ray_scale[1], back->ray_offset[0],
+                         back->ray_offset[1]};
+    if (source->surface)
+        gl.ProgramUniformMatrix4fv(program, UNIFORM_PROJECTION, 1, GL_FALSE, view->projection);
+    if (!source->shade)
+        return;
+    gl.ProgramUniform3fv(program, UNIFORM_AMBIENT, 1, view->ambient);
+    if (source->surface || passes->targets.color_format[GBUFFER_POSITION] != FORMAT_NONE)
+        return;
+    gl.ProgramUniform3fv(program, UNIFORM_DEPTH_TO_Z, 1, depth_to_z);
+    gl.ProgramUniform4fv(program, UNIFORM_RAY, 1, ray);
+}
+
+Result passes_program(const Passes *passes, const char *name, const char *defines,
+                      const PassesSource *source, GLuint *out)
+{
+    char text[1024];
+    const char *parts[5];
+    int count = 0;
+    write_defines(passes, defines, text, sizeof text);
+    if (source->surface)
+        parts[count++] = shader_surface;
+    if (source->peel_test)
+        parts[count++] = shader_peel_test;
+    if (source->octahedral)
+        parts[count++] = shader_octahedral;
+    if (source->shade)
+        parts[count++] = shader_shade;
+    parts[count++] = source->main;
+    Result result =
+        program_build(name, text, source->surface ? shader_geometry_vert : shader_fullscreen_vert,
+                      parts, count, out);
+    if (result == RESULT_OK)
+        set_constants(passes, source, *out);
+    return result;
+}
+
+Result passes_geometry_program(const Passes *passes, const char *name, const char *defines,
+                               GLuint *out)
+{
+    const PassesSource source = {.surface = true,
+                                 .peel_test = *defines != '\0',
+                                 .octahedral = true,
+                                 .main = shader_geometry_frag};
+    return passes_program(passes, name, defines, &source, out);
 }
 
 static Result build_programs(Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
-    Result result = RESULT_OK;
-    for (int i = 0; i < GEOMETRY_PASSES && result == RESULT_OK; i++)
-        result = build_geometry(passes, (GeometryPass)i, &passes->geometry[i]);
-    for (int i = 0; i < LIGHTING_PASSES && result == RESULT_OK; i++)
-        result = build_lighting(passes, (LightingPass)i, &passes->lighting[i]);
+    const PassesSource lighting = {.octahedral = true, .shade = true, .main = shader_lighting_frag};
+    const PassesSource resolve = {.main = shader_resolve_frag};
+    Result result =
+        passes_geometry_program(passes, "opaque geometry", "", &passes->opaque_geometry);
     if (result == RESULT_OK)
-        result = program_build(
-            "resolve", desc->opaque_blend == OPAQUE_BLEND_SEED ? "#define SEED_BLEND\n" : "",
-            shader_fullscreen_vert, shader_resolve_frag, &passes->resolve);
+        result = passes_program(passes, "opaque lighting", "", &lighting, &passes->opaque_lighting);
+    if (result == RESULT_OK)
+        result =
+            passes_program(passes, "peel lighting", desc->back_light ? "#define BACK_LIGHT\n" : "",
+                           &lighting, &passes->peel_lighting);
+    if (result == RESULT_OK)
+        result =
+            passes_program(passes, "resolve",
+                           desc->opaque_blend == OPAQUE_BLEND_SEED ? "#define SEED_BLEND\n" : "",
+                           &resolve, &passes->resolve);
     return result;
 }
 
-/* What no draw changes. */
-static void set_constants(Passes *passes)
+/* ---- the frame ---- */
+
+static void set_state(const Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
-    for (int i = 0; i < GEOMETRY_PASSES; i++)
-        gl.ProgramUniformMatrix4fv(passes->geometry[i], UNIFORM_PROJECTION, 1, GL_FALSE,
-                                   passes->view->projection);
-    const Unprojection *back = &passes->view->unprojection;
-    const float depth_to_z[] = {back->depth_scale, back->depth_offset, back->inverse_far};
-    const float ray[] = {back->ray_scale[0], back->ray_scale[1], back->ray_offset[0],
-                         back->ray_offset[1]};
-    for (int i = 0; i < LIGHTING_PASSES; i++) {
-        gl.ProgramUniform3fv(passes->lighting[i], UNIFORM_AMBIENT, 1, passes->view->ambient);
-        if (passes->targets.color_format[GBUFFER_POSITION] != FORMAT_NONE)
-            continue;
-        gl.ProgramUniform3fv(passes->lighting[i], UNIFORM_DEPTH_TO_Z, 1, depth_to_z);
-        gl.ProgramUniform4fv(passes->lighting[i], UNIFORM_RAY, 1, ray);
-    }
     gl.ProgramUniform3fv(passes->resolve, UNIFORM_BACKGROUND, 1, passes->view->background);
     gl.Viewport(0, 0, desc->width, desc->height);
     if (desc->depth_range == DEPTH_RANGE_REVERSED)
@@ -114,9 +152,9 @@ static void set_constants(Passes *passes)
 }
 
 Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc, const View *view,
-                     Passes *out)
+                     TraceSink *trace, Passes *out)
 {
-    *out = (Passes){.context = context, .scene = scene, .desc = desc, .view = view};
+    *out = (Passes){.context = context, .scene = scene, .desc = desc, .view = view, .trace = trace};
     Result result = targets_create(context, desc, &out->targets);
     if (result == RESULT_OK)
         result = upload_meshes(context, scene, &out->meshes);
@@ -126,9 +164,13 @@ Result passes_create(Context *context, const Scene *scene, const RenderDesc *des
         result = upload_textures(context, scene, desc, out->targets.bytes, &out->textures);
     if (result == RESULT_OK)
         result = build_programs(out);
+    if (result == RESULT_OK && trace) {
+        out->pixels = memory_array((size_t)desc->width * (size_t)desc->height, 4 * sizeof(float));
+        result = out->pixels ? RESULT_OK : RESULT_NO_MEMORY;
+    }
     if (result == RESULT_OK) {
         gl.CreateQueries(GL_SAMPLES_PASSED, 1, &out->samples);
-        set_constants(out);
+        set_state(out);
         result = context_check(context, "set-up");
     }
     if (result != RESULT_OK)
@@ -142,25 +184,18 @@ void passes_destroy(Passes *passes)
     upload_free_meshes(&passes->meshes);
     upload_free_lights(&passes->lights);
     upload_free_textures(&passes->textures);
-    for (int i = 0; i < GEOMETRY_PASSES; i++)
-        gl.DeleteProgram(passes->geometry[i]);
-    for (int i = 0; i < LIGHTING_PASSES; i++)
-        gl.DeleteProgram(passes->lighting[i]);
+    gl.DeleteProgram(passes->opaque_geometry);
+    gl.DeleteProgram(passes->opaque_lighting);
+    gl.DeleteProgram(passes->peel_lighting);
     gl.DeleteProgram(passes->resolve);
     gl.DeleteQueries(1, &passes->samples);
+    free(passes->pixels);
     *passes = (Passes){0};
 }
 
-static void clear_gbuffer(const Passes *passes, GLuint framebuffer)
-{
-    static const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-    const float far = passes->desc->depth_range == DEPTH_RANGE_REVERSED ? 0.0f : 1.0f;
-    for (int i = 0; i < passes->targets.color_count; i++)
-        gl.ClearNamedFramebufferfv(framebuffer, GL_COLOR, i, zero);
-    gl.ClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
-}
+/* ---- draws ---- */
 
-/* Texture units of shaders/geometry.frag.glsl. */
+/* Texture units of shaders/surface.glsl. */
 enum {
     UNIT_BASE_COLOR = 2,
     UNIT_METALLIC_ROUGHNESS
@@ -195,104 +230,132 @@ static void bind_textures(const Passes *passes, GLuint program, const Draw *item
                         item->masked ? material->alpha_cutoff : 0.0f);
 }
 
-static void draw(const Passes *passes, GLuint program, const Draw *item)
+void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, uint32_t first,
+                       uint32_t count)
 {
-    const MeshRange *range = &passes->meshes.ranges[item->mesh];
-    if (range->index_count == 0)
+    const MeshRange *range = &passes->meshes.ranges[draw->mesh];
+    uint32_t triangles = range->index_count / 3;
+    if (first >= triangles)
         return;
-    const Material *material = &passes->scene->materials[item->material];
+    count = count < triangles - first ? count : triangles - first;
+    const Material *material = &passes->scene->materials[draw->material];
     const float surface[3] = {material->roughness, material->metallic, material->occlusion};
-    gl.ProgramUniformMatrix4fv(program, UNIFORM_MODEL_VIEW, 1, GL_FALSE, item->model_view);
-    gl.ProgramUniformMatrix3fv(program, UNIFORM_NORMAL_MATRIX, 1, GL_FALSE, item->normal_matrix);
+    gl.ProgramUniformMatrix4fv(program, UNIFORM_MODEL_VIEW, 1, GL_FALSE, draw->model_view);
+    gl.ProgramUniformMatrix3fv(program, UNIFORM_NORMAL_MATRIX, 1, GL_FALSE, draw->normal_matrix);
     gl.ProgramUniform4fv(program, UNIFORM_BASE_COLOR, 1, material->base_color);
     gl.ProgramUniform3fv(program, UNIFORM_MATERIAL, 1, surface);
-    gl.ProgramUniform1i(program, UNIFORM_CULL_BACK, item->cull_back);
-    gl.ProgramUniform1i(program, UNIFORM_FLIPPED, item->flipped);
-    bind_textures(passes, program, item);
-    gl.DrawElementsBaseVertex(GL_TRIANGLES, (GLsizei)range->index_count, GL_UNSIGNED_INT,
-                              (const void *)(range->first_index * sizeof(uint32_t)),
-                              range->base_vertex);
+    gl.ProgramUniform1i(program, UNIFORM_CULL_BACK, draw->cull_back);
+    gl.ProgramUniform1i(program, UNIFORM_FLIPPED, draw->flipped);
+    bind_textures(passes, program, draw);
+    size_t at = range->first_index + 3 * (size_t)first;
+    gl.DrawElementsBaseVertex(GL_TRIANGLES, (GLsizei)(3 * count), GL_UNSIGNED_INT,
+                              (const void *)(at * sizeof(uint32_t)), range->base_vertex);
 }
 
-static void draw_list(const Passes *passes, GLuint program, bool transparent)
+void passes_draw_list(const Passes *passes, GLuint program, bool transparent)
 {
     gl.UseProgram(program);
-    gl.Enable(GL_DEPTH_TEST);
     for (size_t i = 0; i < passes->view->draw_count; i++)
         if (passes->view->draws[i].transparent == transparent)
-            draw(passes, program, &passes->view->draws[i]);
-    gl.Disable(GL_DEPTH_TEST);
+            passes_draw_range(passes, program, &passes->view->draws[i], 0, UINT32_MAX);
 }
 
-Result passes_opaque_geometry(Passes *passes)
+Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
+                           uint64_t *samples)
 {
-    static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
-    Targets *targets = &passes->targets;
-    gl.ClearNamedFramebufferfv(targets->plain_buffer, GL_COLOR, 0, no_color_all_transmitted);
-    clear_gbuffer(passes, targets->opaque_buffer);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->opaque_buffer);
-    draw_list(passes, passes->geometry[GEOMETRY_OPAQUE], false);
-    return targets_copy_code(targets, targets->opaque_buffer, targets->opaque_code);
-}
-
-Result passes_peel_geometry(Passes *passes, int peel, uint64_t *samples)
-{
-    Targets *targets = &passes->targets;
-    int current = peel & 1;
-    clear_gbuffer(passes, targets->peel_buffer[current]);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->peel_buffer[current]);
-    if (peel > 0) {
-        Result result =
-            targets_copy_code(targets, targets->peel_buffer[1 - current], targets->previous_code);
-        if (result != RESULT_OK)
-            return result;
-        gl.BindTextureUnit(0, targets->previous_code ? targets->previous_code
-                                                     : targets->peel_depth[1 - current]);
-    }
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque_depth);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
-    draw_list(passes, passes->geometry[peel > 0 ? GEOMETRY_NEXT_PEEL : GEOMETRY_FIRST_PEEL], true);
-    gl.EndQuery(GL_SAMPLES_PASSED);
     GLuint64 count = 0;
+    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    gl.Enable(GL_DEPTH_TEST);
+    passes_draw_list(passes, program, transparent);
+    gl.Disable(GL_DEPTH_TEST);
+    gl.EndQuery(GL_SAMPLES_PASSED);
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
     *samples = count;
-    return context_check(passes->context, "peel");
+    return context_check(passes->context, "geometry pass");
+}
+
+void passes_fullscreen(const Passes *passes, GLuint program, GLuint framebuffer)
+{
+    (void)passes;
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    gl.UseProgram(program);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void passes_clear_layer(const Passes *passes, const Layer *layer)
+{
+    static const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    const float far = passes->desc->depth_range == DEPTH_RANGE_REVERSED ? 0.0f : 1.0f;
+    for (int i = 0; i < passes->targets.color_count; i++)
+        gl.ClearNamedFramebufferfv(layer->buffer, GL_COLOR, i, zero);
+    gl.ClearNamedFramebufferfv(layer->buffer, GL_DEPTH, 0, &far);
+}
+
+/* ---- the passes that methods share ---- */
+
+Result passes_opaque(Passes *passes)
+{
+    static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+    const Targets *targets = &passes->targets;
+    uint64_t samples;
+    gl.ClearNamedFramebufferfv(targets->plain_buffer, GL_COLOR, 0, no_color_all_transmitted);
+    passes_clear_layer(passes, &targets->opaque);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->opaque.buffer);
+    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, &samples);
+    if (result == RESULT_OK)
+        result = targets_copy_code(targets, targets->opaque.buffer, targets->opaque_code);
+    if (result == RESULT_OK && passes->trace)
+        result = readback_trace_gbuffer(targets, targets->opaque.buffer, -1, passes->trace,
+                                        passes->pixels);
+    return result;
+}
+
+void passes_blend_under(void)
+{
+    gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
 }
 
 /* Where no position is stored, the depth takes its texture unit. */
-static void light(const Passes *passes, LightingPass pass, const GLuint color[GBUFFER_TARGETS],
-                  GLuint depth)
+static void light(const Passes *passes, GLuint program, const Layer *layer)
 {
     for (GLuint i = 0; i < GBUFFER_TARGETS; i++)
-        gl.BindTextureUnit(i, color[i] ? color[i] : depth);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, passes->targets.plain_buffer);
-    gl.UseProgram(passes->lighting[pass]);
+        gl.BindTextureUnit(i, layer->color[i] ? layer->color[i] : layer->depth);
     gl.Enable(GL_BLEND);
-    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    passes_fullscreen(passes, program, passes->targets.plain_buffer);
     gl.Disable(GL_BLEND);
 }
 
-void passes_peel_lighting(Passes *passes, int peel)
+void passes_light_layer(const Passes *passes, const Layer *layer)
 {
-    gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-    light(passes, LIGHTING_PEEL, passes->targets.peel_color, passes->targets.peel_depth[peel & 1]);
+    passes_blend_under();
+    light(passes, passes->peel_lighting, layer);
 }
 
-void passes_opaque_lighting(Passes *passes)
+Result passes_finish(Passes *passes, int peels)
 {
     if (passes->desc->opaque_blend == OPAQUE_BLEND_SEED)
         gl.BlendFunc(GL_DST_ALPHA, GL_ONE);
     else
-        gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-    light(passes, LIGHTING_OPAQUE, passes->targets.opaque_color, passes->targets.opaque_depth);
+        passes_blend_under();
+    light(passes, passes->opaque_lighting, &passes->targets.opaque);
+    return passes_trace_accum(passes, peels + 1);
+}
+
+Result passes_trace_accum(Passes *passes, int step)
+{
+    const Targets *targets = &passes->targets;
+    if (!passes->trace)
+        return RESULT_OK;
+    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
+                   passes->pixels);
+    return trace_put(passes->trace, "accum", step, targets->accum_format, targets->width,
+                     targets->height, passes->pixels);
 }
 
 void passes_resolve(Passes *passes)
 {
     const Targets *targets = &passes->targets;
     gl.BindTextureUnit(0, targets->accum);
-    gl.BindTextureUnit(1, targets->opaque_color[GBUFFER_DIFFUSE]);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->resolve_buffer);
-    gl.UseProgram(passes->resolve);
-    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl.BindTextureUnit(1, targets->opaque.color[GBUFFER_DIFFUSE]);
+    passes_fullscreen(passes, passes->resolve, targets->resolve_buffer);
 }

@@ -1,57 +1,86 @@
-/* The passes of a frame, each ready to run: geometry, lighting, resolve.
+/* What the methods' passes are made of: the frame's objects, programs behind common sources, draws
+ * of a list, full-screen passes, and the passes that all methods share.
  *
- * Passes own every object of the driver's that a frame needs. They do not decide the order in
- * which they run; a method does (methods/). */
+ * A method decides what runs in which order (methods/), and owns what only it needs. */
 #ifndef PEEL_GL_PASSES_H
 #define PEEL_GL_PASSES_H
 
+#include "frame/frame.h"
 #include "targets.h"
 #include "upload.h"
-
-typedef enum GeometryPass {
-    GEOMETRY_OPAQUE = 0,
-    GEOMETRY_FIRST_PEEL, /* nothing peeled before */
-    GEOMETRY_NEXT_PEEL,
-    GEOMETRY_PASSES
-} GeometryPass;
-
-typedef enum LightingPass {
-    LIGHTING_OPAQUE = 0,
-    LIGHTING_PEEL,
-    LIGHTING_PASSES
-} LightingPass;
 
 typedef struct Passes {
     Context *context;
     const Scene *scene; /* borrowed */
     const RenderDesc *desc;
     const View *view;
+    TraceSink *trace; /* may be NULL */
+    void *pixels;     /* scratch for read-back, 16 bytes a pixel; NULL without a trace */
     Targets targets;
     Meshes meshes;
     LightBuffer lights;
     Textures textures;
-    GLuint geometry[GEOMETRY_PASSES], lighting[LIGHTING_PASSES], resolve; /* programs */
-    GLuint samples;                                                       /* query */
+    GLuint opaque_geometry, opaque_lighting, peel_lighting, resolve; /* programs */
+    GLuint samples;                                                  /* query */
 } Passes;
 
-/* Uploads the scene and builds programs and buffers; scene, desc and view must outlive *out. On
- * failure *out is empty. */
+/* Uploads the scene and builds programs and buffers; scene, desc, view and trace must outlive
+ * *out. On failure *out is empty. */
 Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc, const View *view,
-                     Passes *out);
+                     TraceSink *trace, Passes *out);
 void passes_destroy(Passes *passes);
 
-/* Clears the opaque G-buffer and the accumulation and draws the opaque list. */
-Result passes_opaque_geometry(Passes *passes);
+/* ---- programs ---- */
 
-/* Clears the peels' G-buffer and draws peel `peel`, counted from 0, of the transparent list;
- * *samples is the number of fragments that passed, 0 when nothing is left to peel. */
-Result passes_peel_geometry(Passes *passes, int peel, uint64_t *samples);
+/* Fragment sources, in this order; they may use each other's functions. */
+typedef struct PassesSource {
+    bool surface;    /* surface.glsl */
+    bool peel_test;  /* peel_test.glsl */
+    bool octahedral; /* octahedral.glsl */
+    bool shade;      /* shade.glsl */
+    const char *main;
+} PassesSource;
 
-/* Shades peel `peel`, just drawn, and blends it under the accumulation. */
-void passes_peel_lighting(Passes *passes, int peel);
-/* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says. */
-void passes_opaque_lighting(Passes *passes);
+/* A program that draws meshes (geometry.vert) or, where source->surface is false, one triangle that
+ * covers the viewport. It has the switches of desc and the scene that those sources name, and
+ * `defines` ("" for none); uniforms that no draw changes are set. The caller deletes it. */
+Result passes_program(const Passes *passes, const char *name, const char *defines,
+                      const PassesSource *source, GLuint *out);
+
+/* The G-buffer program of a geometry pass: TRANSPARENT, NEXT_PEEL or nothing. */
+Result passes_geometry_program(const Passes *passes, const char *name, const char *defines,
+                               GLuint *out);
+
+/* ---- draws ---- */
+
+/* The draws of one list, in order, to the bound framebuffer, without touching its depth test. */
+void passes_draw_list(const Passes *passes, GLuint program, bool transparent);
+/* The same with the depth test on, counting the fragments that passed. */
+Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
+                           uint64_t *samples);
+/* One draw; its index range in triangles, 0 and UINT32_MAX for all. */
+void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, uint32_t first,
+                       uint32_t count);
+/* program over every pixel of framebuffer. */
+void passes_fullscreen(const Passes *passes, GLuint program, GLuint framebuffer);
+
+/* Colours of a G-buffer to 0, its depth to the far end. */
+void passes_clear_layer(const Passes *passes, const Layer *layer);
+
+/* ---- the passes that methods share ---- */
+
+/* Clears the opaque G-buffer and the accumulation, draws the opaque list, traces the G-buffer. */
+Result passes_opaque(Passes *passes);
+/* Shades a peel's G-buffer and blends it under the accumulation. */
+void passes_light_layer(const Passes *passes, const Layer *layer);
+/* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says;
+ * traces the accumulation as the step after `peels`. */
+Result passes_finish(Passes *passes, int peels);
+/* The second half of it, where the opaque colour is blended already. */
+Result passes_trace_accum(Passes *passes, int step);
 /* Accumulation and background to the final image, and its display form. */
 void passes_resolve(Passes *passes);
+/* Blending as the source's under-blend. */
+void passes_blend_under(void);
 
 #endif

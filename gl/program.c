@@ -16,11 +16,15 @@
     "#define DISPLAY_POWER %.9g\n"
 
 static Result compile(const char *name, GLenum stage, const char *prelude, const char *defines,
-                      const char *source, GLuint *out)
+                      const char *const *sources, int count, GLuint *out)
 {
-    const char *parts[] = {prelude, defines, "#line 1\n", source};
+    const char *parts[2 + 2 * PROGRAM_PARTS] = {prelude, defines};
+    for (int i = 0; i < count; i++) {
+        parts[2 + 2 * i] = "#line 1\n";
+        parts[3 + 2 * i] = sources[i];
+    }
     GLuint shader = gl.CreateShader(stage);
-    gl.ShaderSource(shader, sizeof parts / sizeof *parts, parts, NULL);
+    gl.ShaderSource(shader, 2 + 2 * count, parts, NULL);
     gl.CompileShader(shader);
     GLint done = GL_FALSE;
     gl.GetShaderiv(shader, GL_COMPILE_STATUS, &done);
@@ -56,7 +60,7 @@ static Result link(const char *name, GLuint vertex, GLuint fragment, GLuint *out
 }
 
 Result program_build(const char *name, const char *defines, const char *vertex,
-                     const char *fragment, GLuint *out)
+                     const char *const *fragment, int parts, GLuint *out)
 {
     *out = 0;
     char prelude[512];
@@ -65,9 +69,9 @@ Result program_build(const char *name, const char *defines, const char *vertex,
              (double)SHADING_DISTANCE2_MIN, (double)SHADING_SPECULAR_BIAS, (double)SHADING_PI,
              (double)SHADING_DISPLAY_POWER);
     GLuint stages[2] = {0, 0};
-    Result result = compile(name, GL_VERTEX_SHADER, prelude, defines, vertex, &stages[0]);
+    Result result = compile(name, GL_VERTEX_SHADER, prelude, defines, &vertex, 1, &stages[0]);
     if (result == RESULT_OK)
-        result = compile(name, GL_FRAGMENT_SHADER, prelude, defines, fragment, &stages[1]);
+        result = compile(name, GL_FRAGMENT_SHADER, prelude, defines, fragment, parts, &stages[1]);
     if (result == RESULT_OK)
         result = link(name, stages[0], stages[1], out);
     gl.DeleteShader(stages[0]); /* 0 is ignored */

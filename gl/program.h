@@ -4,9 +4,17 @@
 
 #include "api.h"
 
+enum {
+    PROGRAM_PARTS = 8
+};
+
 /* Embedded from shaders/; static, NUL-terminated. */
 extern const char shader_geometry_vert[];
 extern const char shader_geometry_frag[];
+extern const char shader_surface[];
+extern const char shader_peel_test[];
+extern const char shader_octahedral[];
+extern const char shader_shade[];
 extern const char shader_fullscreen_vert[];
 extern const char shader_lighting_frag[];
 extern const char shader_resolve_frag[];
@@ -15,10 +23,11 @@ extern const char shader_fuses_frag[];
 extern const char shader_experiment_vert[];
 extern const char shader_experiment_frag[];
 
-/* Compiles and links vertex and fragment source, each behind "#version 450 core", the constants
- * of frame/shading.h and `defines` (lines of "#define ...\n", "" for none). name is for messages.
- * NO_GL with the compiler's text on failure, and *out is 0. The caller deletes the program. */
+/* Compiles and links the vertex source and the fragment sources, at most PROGRAM_PARTS, each stage
+ * behind "#version 450 core", the constants of frame/shading.h and `defines` (lines of "#define
+ * ...\n", "" for none). name is for messages. NO_GL with the compiler's text on failure, and *out
+ * is 0. The caller deletes the program. */
 Result program_build(const char *name, const char *defines, const char *vertex,
-                     const char *fragment, GLuint *out);
+                     const char *const *fragment, int parts, GLuint *out);
 
 #endif

@@ -20,31 +20,17 @@ static void choose_formats(const RenderDesc *desc, Targets *out)
         out->attachment[i] = out->color_format[i] == FORMAT_NONE ? -1 : out->color_count++;
 }
 
-/* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float: the two
- * greatest are both 1. The opaque depth can be either of them, a previous peel's only where the
- * near plane is at 1. */
-static bool needs_code(const RenderDesc *desc)
+bool targets_needs_code(const RenderDesc *desc)
 {
     return render_desc_depth(desc) == FORMAT_D24 && desc->peel_test == PEEL_TEST_STORED;
 }
 
-static bool needs_previous_code(const RenderDesc *desc)
+bool targets_needs_previous_code(const RenderDesc *desc)
 {
-    return needs_code(desc) && desc->depth_range == DEPTH_RANGE_REVERSED;
+    return targets_needs_code(desc) && desc->depth_range == DEPTH_RANGE_REVERSED;
 }
 
-static size_t count_bytes(const RenderDesc *desc, const Targets *targets)
-{
-    size_t pixel = 3 * format_pixel_bytes(targets->depth_format);
-    for (int i = 0; i < GBUFFER_TARGETS; i++)
-        pixel += 2 * format_pixel_bytes(targets->color_format[i]);
-    pixel += format_pixel_bytes(targets->accum_format);
-    pixel += format_pixel_bytes(FORMAT_RGBA32F) + format_pixel_bytes(FORMAT_RGBA8);
-    pixel += format_pixel_bytes(FORMAT_R32UI) * (needs_code(desc) + needs_previous_code(desc));
-    return pixel * (size_t)desc->width * (size_t)desc->height;
-}
-
-static Result check_limits(const Context *context, const RenderDesc *desc, size_t bytes)
+static Result check_limits(const Context *context, const RenderDesc *desc)
 {
     const ContextLimits *limits = context_limits(context);
     int width =
@@ -54,51 +40,30 @@ static Result check_limits(const Context *context, const RenderDesc *desc, size_
     if (desc->width > width || desc->height > height)
         return result_fail(RESULT_BAD_INPUT, "size %dx%d: the OpenGL driver allows %dx%d at most",
                            desc->width, desc->height, width, height);
-    if (limits->draw_buffers < GBUFFER_TARGETS)
-        return result_fail(RESULT_NO_GL, "OpenGL: %d draw buffers expected, the driver has %d",
-                           (int)GBUFFER_TARGETS, limits->draw_buffers);
-    size_t most = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
-    if (bytes > most)
-        return result_fail(RESULT_NO_MEMORY,
-                           "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
-                           desc->width, desc->height, bytes >> 10, most >> 10);
+    if (limits->draw_buffers < 8)
+        return result_fail(RESULT_NO_GL, "OpenGL: 8 draw buffers expected, the driver has %d",
+                           limits->draw_buffers);
     return RESULT_OK;
 }
 
-static GLuint make_texture(const Targets *targets, PixelFormat format)
+Result targets_texture(Targets *targets, PixelFormat format, GLuint *out)
 {
-    GLuint texture;
-    gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);
-    gl.TextureStorage2D(texture, 1, formats_gl(format)->internal, targets->width, targets->height);
-    gl.TextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl.TextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    return texture;
+    *out = 0;
+    targets->bytes += format_pixel_bytes(format) * (size_t)targets->width * (size_t)targets->height;
+    if (targets->bytes > targets->limit)
+        return result_fail(
+            RESULT_NO_MEMORY, "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
+            targets->width, targets->height, targets->bytes >> 10, targets->limit >> 10);
+    gl.CreateTextures(GL_TEXTURE_2D, 1, out);
+    gl.TextureStorage2D(*out, 1, formats_gl(format)->internal, targets->width, targets->height);
+    gl.TextureParameteri(*out, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl.TextureParameteri(*out, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return RESULT_OK;
 }
 
-static void make_textures(const RenderDesc *desc, Targets *out)
+Result targets_framebuffer(int count, const GLuint *color, GLuint depth, GLuint *out)
 {
-    out->opaque_depth = make_texture(out, out->depth_format);
-    for (int i = 0; i < 2; i++)
-        out->peel_depth[i] = make_texture(out, out->depth_format);
-    for (int i = 0; i < GBUFFER_TARGETS; i++) {
-        if (out->attachment[i] < 0)
-            continue;
-        out->opaque_color[i] = make_texture(out, out->color_format[i]);
-        out->peel_color[i] = make_texture(out, out->color_format[i]);
-    }
-    if (needs_code(desc))
-        out->opaque_code = make_texture(out, FORMAT_R32UI);
-    if (needs_previous_code(desc))
-        out->previous_code = make_texture(out, FORMAT_R32UI);
-    out->accum = make_texture(out, out->accum_format);
-    out->final = make_texture(out, FORMAT_RGBA32F);
-    out->display = make_texture(out, FORMAT_RGBA8);
-}
-
-/* depth 0: no depth attachment. */
-static Result make_framebuffer(int count, const GLuint *color, GLuint depth, GLuint *out)
-{
-    GLenum buffers[GBUFFER_TARGETS];
+    GLenum buffers[8];
     gl.CreateFramebuffers(1, out);
     for (int i = 0; i < count; i++) {
         buffers[i] = GL_COLOR_ATTACHMENT0 + (GLenum)i;
@@ -119,42 +84,62 @@ static Result make_framebuffer(int count, const GLuint *color, GLuint depth, GLu
     return RESULT_OK;
 }
 
-/* The G-buffer's textures in the order of their attachments, without gaps. */
-static Result make_gbuffer(const Targets *targets, const GLuint color[GBUFFER_TARGETS],
-                           GLuint depth, GLuint *out)
+Result targets_layer(Targets *targets, const Layer *shared, Layer *out)
 {
     GLuint attached[GBUFFER_TARGETS];
-    for (int i = 0; i < GBUFFER_TARGETS; i++)
-        if (targets->attachment[i] >= 0)
-            attached[targets->attachment[i]] = color[i];
-    return make_framebuffer(targets->color_count, attached, depth, out);
+    *out = (Layer){0};
+    Result result = targets_texture(targets, targets->depth_format, &out->depth);
+    for (int i = 0; i < GBUFFER_TARGETS && result == RESULT_OK; i++) {
+        if (targets->attachment[i] < 0)
+            continue;
+        if (shared)
+            out->color[i] = shared->color[i];
+        else
+            result = targets_texture(targets, targets->color_format[i], &out->color[i]);
+        attached[targets->attachment[i]] = out->color[i];
+    }
+    if (result == RESULT_OK)
+        result = targets_framebuffer(targets->color_count, attached, out->depth, &out->buffer);
+    return result;
 }
 
-static Result make_framebuffers(Targets *out)
+void targets_destroy_layer(Layer *layer, bool shares_color)
 {
-    Result result = make_gbuffer(out, out->opaque_color, out->opaque_depth, &out->opaque_buffer);
-    for (int i = 0; i < 2 && result == RESULT_OK; i++)
-        result = make_gbuffer(out, out->peel_color, out->peel_depth[i], &out->peel_buffer[i]);
+    gl.DeleteFramebuffers(1, &layer->buffer);
+    gl.DeleteTextures(1, &layer->depth);
+    if (!shares_color)
+        gl.DeleteTextures(GBUFFER_TARGETS, layer->color);
+    *layer = (Layer){0};
+}
+
+static Result make(const RenderDesc *desc, Targets *out)
+{
+    Result result = targets_layer(out, NULL, &out->opaque);
+    if (result == RESULT_OK && targets_needs_code(desc))
+        result = targets_texture(out, FORMAT_R32UI, &out->opaque_code);
     if (result == RESULT_OK)
-        result = make_framebuffer(1, &out->accum, 0, &out->plain_buffer);
+        result = targets_texture(out, out->accum_format, &out->accum);
+    if (result == RESULT_OK)
+        result = targets_texture(out, FORMAT_RGBA32F, &out->final);
+    if (result == RESULT_OK)
+        result = targets_texture(out, FORMAT_RGBA8, &out->display);
+    if (result == RESULT_OK)
+        result = targets_framebuffer(1, &out->accum, 0, &out->plain_buffer);
     const GLuint resolved[] = {out->final, out->display};
     if (result == RESULT_OK)
-        result = make_framebuffer(2, resolved, 0, &out->resolve_buffer);
+        result = targets_framebuffer(2, resolved, 0, &out->resolve_buffer);
     return result;
 }
 
 Result targets_create(Context *context, const RenderDesc *desc, Targets *out)
 {
-    *out = (Targets){.width = desc->width, .height = desc->height};
+    *out = (Targets){.width = desc->width,
+                     .height = desc->height,
+                     .limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT};
     choose_formats(desc, out);
-    out->bytes = count_bytes(desc, out);
-    Result result = check_limits(context, desc, out->bytes);
-    if (result == RESULT_OK) {
-        make_textures(desc, out);
-        result = context_check(context, "textures");
-    }
+    Result result = check_limits(context, desc);
     if (result == RESULT_OK)
-        result = make_framebuffers(out);
+        result = make(desc, out);
     if (result == RESULT_OK)
         result = context_check(context, "framebuffers");
     if (result != RESULT_OK)
@@ -164,23 +149,17 @@ Result targets_create(Context *context, const RenderDesc *desc, Targets *out)
 
 void targets_destroy(Targets *targets)
 {
-    gl.DeleteFramebuffers(1, &targets->opaque_buffer);
-    gl.DeleteFramebuffers(2, targets->peel_buffer);
+    targets_destroy_layer(&targets->opaque, false);
     gl.DeleteFramebuffers(1, &targets->plain_buffer);
     gl.DeleteFramebuffers(1, &targets->resolve_buffer);
-    gl.DeleteTextures(1, &targets->opaque_depth);
-    gl.DeleteTextures(GBUFFER_TARGETS, targets->opaque_color);
     gl.DeleteTextures(1, &targets->opaque_code);
-    gl.DeleteTextures(1, &targets->previous_code);
-    gl.DeleteTextures(2, targets->peel_depth);
-    gl.DeleteTextures(GBUFFER_TARGETS, targets->peel_color);
     gl.DeleteTextures(1, &targets->accum);
     gl.DeleteTextures(1, &targets->final);
     gl.DeleteTextures(1, &targets->display);
     *targets = (Targets){0};
 }
 
-Result targets_copy_code(Targets *targets, GLuint framebuffer, GLuint code)
+Result targets_copy_code(const Targets *targets, GLuint framebuffer, GLuint code)
 {
     if (!code)
         return RESULT_OK;

@@ -1,7 +1,6 @@
-/* The textures and framebuffers of one frame.
+/* The textures and framebuffers that every frame has, and the means to make a method's own.
  *
- * One opaque G-buffer; two framebuffers for the peels that take turns, with a depth texture each
- * and one shared set of colour textures; the accumulation ("plain") buffer; the resolve buffer. */
+ * The opaque G-buffer; the accumulation ("plain") buffer; the resolve buffer. */
 #ifndef PEEL_GL_TARGETS_H
 #define PEEL_GL_TARGETS_H
 
@@ -16,27 +15,48 @@ enum {
     GBUFFER_TARGETS
 };
 
+/* A G-buffer: textures, 0 for a colour that is not stored, and the framebuffer that they make. */
+typedef struct Layer {
+    GLuint depth, color[GBUFFER_TARGETS], buffer;
+} Layer;
+
 typedef struct Targets {
     int width, height;
     PixelFormat depth_format, accum_format;
     PixelFormat color_format[GBUFFER_TARGETS]; /* FORMAT_NONE: not stored */
     int attachment[GBUFFER_TARGETS];           /* its draw buffer and shader output; −1: none */
     int color_count;                           /* of those stored */
-    GLuint opaque_depth, opaque_color[GBUFFER_TARGETS];
-    /* R32UI copies of 24-bit depths that a fetch would confuse; 0 where they are not needed. */
-    GLuint opaque_code, previous_code;
-    GLuint peel_depth[2], peel_color[GBUFFER_TARGETS];
+    Layer opaque;
+    GLuint opaque_code; /* see targets_needs_code; 0 where it is not needed */
     GLuint accum, final, display;
-    GLuint opaque_buffer, peel_buffer[2], plain_buffer, resolve_buffer; /* framebuffers */
-    size_t bytes;                                                       /* of the textures */
+    GLuint plain_buffer, resolve_buffer; /* framebuffers of accum; of final and display */
+    size_t bytes, limit;                 /* of the textures; the caller's --max-memory */
 } Targets;
 
 /* Makes all of it. BAD_INPUT when desc's size passes a limit of the driver's, NO_MEMORY when it
- * needs more than desc->max_memory (4 GiB if 0), with what it would need; *out is then empty. */
+ * needs more than desc->max_memory (4 GiB if 0); *out is then empty. */
 Result targets_create(Context *context, const RenderDesc *desc, Targets *out);
 void targets_destroy(Targets *targets); /* leaves an empty one */
 
-/* Copies the depth integers of framebuffer to one of the code textures; nothing where it is 0. */
-Result targets_copy_code(Targets *targets, GLuint framebuffer, GLuint code);
+/* A texture of the frame's size. NO_MEMORY, and *out is 0, when it passes the limit. The caller
+ * deletes it. */
+Result targets_texture(Targets *targets, PixelFormat format, GLuint *out);
+
+/* A framebuffer of `count` colour attachments, and a depth attachment unless depth is 0. NO_GL when
+ * the driver does not take it. */
+Result targets_framebuffer(int count, const GLuint *color, GLuint depth, GLuint *out);
+
+/* A G-buffer in the frame's formats: a depth texture of its own, the colours those of `shared`
+ * unless that is NULL. On failure *out holds what there is. */
+Result targets_layer(Targets *targets, const Layer *shared, Layer *out);
+void targets_destroy_layer(Layer *layer, bool shares_color); /* leaves an empty one */
+
+/* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float: the two
+ * greatest are both 1. The opaque depth can be either of them, a previous peel's only where the
+ * near plane is at 1. Then a R32UI copy of the integers is needed. */
+bool targets_needs_code(const RenderDesc *desc);
+bool targets_needs_previous_code(const RenderDesc *desc);
+/* Copies the depth integers of framebuffer to a code texture; nothing where it is 0. */
+Result targets_copy_code(const Targets *targets, GLuint framebuffer, GLuint code);
 
 #endif

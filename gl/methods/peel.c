@@ -11,55 +11,71 @@
 #include "readback.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-/* Read-back of the peels; NULL where a run does not need it. */
-typedef struct Scratch {
-    void *pixels;       /* one buffer for the trace */
+typedef struct Peel {
+    Passes *passes;
+    Frame *frame;
+    GLuint first, next;   /* programs */
+    Layer layers[2];      /* take turns: a depth each, and one set of colours */
+    GLuint previous_code; /* see targets_needs_previous_code */
+    /* Read back by the raw test to see repeated layers; NULL otherwise. */
     uint32_t *depth[2]; /* this peel's and the previous one's, as bits */
     void *material;
-} Scratch;
+} Peel;
 
-static Result make_scratch(const Passes *passes, const TraceSink *trace, Scratch *out)
+static Result make(Peel *state)
 {
-    *out = (Scratch){0};
-    size_t pixels = (size_t)passes->targets.width * (size_t)passes->targets.height;
-    if (trace && !(out->pixels = memory_array(pixels, 4 * sizeof(float))))
-        return RESULT_NO_MEMORY;
-    if (passes->desc->peel_test != PEEL_TEST_RAW)
-        return RESULT_OK;
-    out->depth[0] = memory_array(pixels, sizeof(uint32_t));
-    out->depth[1] = memory_array(pixels, sizeof(uint32_t));
-    out->material = memory_array(pixels, 4 * sizeof(float));
-    return out->depth[0] && out->depth[1] && out->material ? RESULT_OK : RESULT_NO_MEMORY;
+    Passes *passes = state->passes;
+    const RenderDesc *desc = passes->desc;
+    size_t pixels = (size_t)desc->width * (size_t)desc->height;
+    Result result =
+        passes_geometry_program(passes, "first peel", "#define TRANSPARENT\n", &state->first);
+    if (result == RESULT_OK)
+        result = passes_geometry_program(passes, "next peel",
+                                         "#define TRANSPARENT\n#define NEXT_PEEL\n", &state->next);
+    if (result == RESULT_OK)
+        result = targets_layer(&passes->targets, NULL, &state->layers[0]);
+    if (result == RESULT_OK)
+        result = targets_layer(&passes->targets, &state->layers[0], &state->layers[1]);
+    if (result == RESULT_OK && targets_needs_previous_code(desc))
+        result = targets_texture(&passes->targets, FORMAT_R32UI, &state->previous_code);
+    if (result != RESULT_OK || desc->peel_test != PEEL_TEST_RAW)
+        return result;
+    state->depth[0] = memory_array(pixels, sizeof(uint32_t));
+    state->depth[1] = memory_array(pixels, sizeof(uint32_t));
+    state->material = memory_array(pixels, 4 * sizeof(float));
+    return state->depth[0] && state->depth[1] && state->material ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
-static void free_scratch(Scratch *scratch)
+static void destroy(Peel *state)
 {
-    free(scratch->pixels);
-    free(scratch->depth[0]);
-    free(scratch->depth[1]);
-    free(scratch->material);
+    gl.DeleteProgram(state->first);
+    gl.DeleteProgram(state->next);
+    targets_destroy_layer(&state->layers[1], true);
+    targets_destroy_layer(&state->layers[0], false);
+    gl.DeleteTextures(1, &state->previous_code);
+    free(state->depth[0]);
+    free(state->depth[1]);
+    free(state->material);
 }
 
 /* Compares a peel's depths with the previous peel's: *repeated counts the pixels that have a
  * fragment at the same stored depth, *fresh those that have one at another. A pixel has a fragment
  * where its material's fourth channel is not 0; its depth may equal the cleared one. */
-static void count_repeats(const Passes *passes, int peel, Scratch *scratch, uint64_t *repeated,
-                          uint64_t *fresh)
+static void count_repeats(const Peel *state, int peel, uint64_t *repeated, uint64_t *fresh)
 {
-    const Targets *targets = &passes->targets;
-    GLuint framebuffer = targets->peel_buffer[peel & 1];
+    const Targets *targets = &state->passes->targets;
+    GLuint framebuffer = state->layers[peel & 1].buffer;
     PixelFormat format = targets->color_format[GBUFFER_MATERIAL];
-    uint32_t *depth = scratch->depth[peel & 1], *previous = scratch->depth[1 - (peel & 1)];
+    uint32_t *depth = state->depth[peel & 1], *previous = state->depth[1 - (peel & 1)];
     readback_depth(targets, framebuffer, READBACK_BOTTOM_UP, depth);
     readback_color(targets, framebuffer, targets->attachment[GBUFFER_MATERIAL], format,
-                   READBACK_BOTTOM_UP, scratch->material);
+                   READBACK_BOTTOM_UP, state->material);
     *repeated = *fresh = 0;
     size_t pixels = (size_t)targets->width * (size_t)targets->height;
     size_t stride = format_pixel_bytes(format);
     for (size_t i = 0; i < pixels; i++) {
-        if (format_channel(format, (const char *)scratch->material + i * stride, 3) == 0.0f)
+        if (format_channel(format, (const char *)state->material + i * stride, 3) == 0.0f)
             continue;
         if (peel > 0 && depth[i] == previous[i])
             ++*repeated;
@@ -68,77 +84,78 @@ static void count_repeats(const Passes *passes, int peel, Scratch *scratch, uint
     }
 }
 
-static Result trace_accum(const Passes *passes, int peel, TraceSink *trace, void *pixels)
+/* *samples: fragments that passed, 0 when nothing is left to peel. */
+static Result draw_peel(Peel *state, int peel, uint64_t *samples)
 {
+    const Passes *passes = state->passes;
+    const Targets *targets = &passes->targets;
+    const Layer *layer = &state->layers[peel & 1], *previous = &state->layers[1 - (peel & 1)];
+    passes_clear_layer(passes, layer);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, layer->buffer);
+    if (peel > 0) {
+        Result result = targets_copy_code(targets, previous->buffer, state->previous_code);
+        if (result != RESULT_OK)
+            return result;
+        gl.BindTextureUnit(0, state->previous_code ? state->previous_code : previous->depth);
+    }
+    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    return passes_draw_counted(passes, peel > 0 ? state->next : state->first, true, samples);
+}
+
+static Result trace_peel(const Peel *state, int peel)
+{
+    const Passes *passes = state->passes;
     const Targets *targets = &passes->targets;
     PixelFormat format = targets->accum_format;
-    readback_color(targets, targets->plain_buffer, 0, format, READBACK_TOP_DOWN, pixels);
-    return trace_put_peel(trace, peel, "accum", format, targets->width, targets->height, pixels);
+    Result result = readback_trace_gbuffer(targets, state->layers[peel & 1].buffer, peel,
+                                           passes->trace, passes->pixels);
+    if (result != RESULT_OK)
+        return result;
+    readback_color(targets, targets->plain_buffer, 0, format, READBACK_TOP_DOWN, passes->pixels);
+    return trace_put_peel(passes->trace, peel, "accum", format, targets->width, targets->height,
+                          passes->pixels);
 }
 
 /* One peel. *more: false when it brought nothing new and was left out. */
-static Result run_peel(Passes *passes, int peel, TraceSink *trace, Scratch *scratch, Frame *out,
-                       bool *more)
+static Result run_peel(Peel *state, int peel, bool *more)
 {
+    const Passes *passes = state->passes;
     uint64_t samples = 0;
     *more = false;
     progress_add();
-    Result result = passes_peel_geometry(passes, peel, &samples);
+    Result result = draw_peel(state, peel, &samples);
     if (result != RESULT_OK || samples == 0)
         return result;
     if (passes->desc->peel_test == PEEL_TEST_RAW) {
         uint64_t repeated, fresh;
-        count_repeats(passes, peel, scratch, &repeated, &fresh);
+        count_repeats(state, peel, &repeated, &fresh);
         if (passes->desc->passes == 0 && fresh == 0)
             return RESULT_OK;
-        out->layers.repeated += repeated;
+        state->frame->layers.repeated += repeated;
     }
     *more = true;
-    out->peels = peel + 1;
-    passes_peel_lighting(passes, peel);
-    if (!trace)
-        return RESULT_OK;
-    result = readback_trace_gbuffer(&passes->targets, passes->targets.peel_buffer[peel & 1], peel,
-                                    trace, scratch->pixels);
-    return result == RESULT_OK ? trace_accum(passes, peel, trace, scratch->pixels) : result;
+    state->frame->peels = peel + 1;
+    passes_light_layer(passes, &state->layers[peel & 1]);
+    return passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-static Result run_peels(Passes *passes, TraceSink *trace, Scratch *scratch, Frame *out)
+static Result run(Peel *state)
 {
+    Passes *passes = state->passes;
     int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
     bool more = true;
-    Result result = RESULT_OK;
+    Result result = passes_opaque(passes);
     for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
-        result = run_peel(passes, peel, trace, scratch, out, &more);
-    return result;
+        result = run_peel(state, peel, &more);
+    return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;
 }
 
-static Result run(Passes *passes, TraceSink *trace, Scratch *scratch, Frame *out)
+Result gl_peel(Passes *passes, Frame *out)
 {
-    const Targets *targets = &passes->targets;
-    Result result = passes_opaque_geometry(passes);
-    if (result == RESULT_OK && trace)
-        result =
-            readback_trace_gbuffer(targets, targets->opaque_buffer, -1, trace, scratch->pixels);
+    Peel state = {.passes = passes, .frame = out};
+    Result result = make(&state);
     if (result == RESULT_OK)
-        result = run_peels(passes, trace, scratch, out);
-    if (result != RESULT_OK)
-        return result;
-    passes_opaque_lighting(passes);
-    if (!trace)
-        return RESULT_OK;
-    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
-                   scratch->pixels);
-    return trace_put(trace, "accum", out->peels + 1, targets->accum_format, targets->width,
-                     targets->height, scratch->pixels);
-}
-
-Result gl_peel(Passes *passes, TraceSink *trace, Frame *out)
-{
-    Scratch scratch;
-    Result result = make_scratch(passes, trace, &scratch);
-    if (result == RESULT_OK)
-        result = run(passes, trace, &scratch, out);
-    free_scratch(&scratch);
+        result = run(&state);
+    destroy(&state);
     return result;
 }

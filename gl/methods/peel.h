@@ -7,6 +7,6 @@
 
 /* Draws the frame up to the resolve pass; fills out->peels and out->layers.repeated. With a trace,
  * every buffer of it but "display" is read back. */
-Result gl_peel(Passes *passes, TraceSink *trace, Frame *out);
+Result gl_peel(Passes *passes, Frame *out);
 
 #endif
