@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "fuses.h"
-#include "methods/peel.h"
+#include "methods/methods.h"
 #include "number/op.h"
 #include "readback.h"
 

@@ -58,6 +58,8 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
     for (size_t i = 0; i < sizeof switches / sizeof *switches; i++)
         if (switches[i].on)
             at += sprintf(at, "#define %s\n", switches[i].name);
+    if (desc->bias > 0.0f)
+        at += sprintf(at, "#define BIAS %.9g\n", (double)desc->bias);
     snprintf(at, size - (size_t)(at - out), "%s", defines);
 }
 

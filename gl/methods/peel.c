@@ -4,7 +4,7 @@
  * C. Everitt, "Interactive Order-Independent Transparency", 2001. Opaque geometry is drawn once;
  * each peel is a geometry pass behind the previous one, shaded by a full-screen pass and blended
  * under what is in front of it; the opaque surfaces are shaded last. */
-#include "methods/peel.h"
+#include "methods/methods.h"
 
 #include "base/memory.h"
 #include "base/progress.h"
@@ -123,6 +123,7 @@ static Result run_peel(Peel *state, int peel, bool *more)
     uint64_t samples = 0;
     *more = false;
     progress_add();
+    state->frame->geometry_passes++;
     Result result = draw_peel(state, peel, &samples);
     if (result != RESULT_OK || samples == 0)
         return result;
@@ -145,6 +146,7 @@ static Result run(Peel *state)
     int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
     bool more = true;
     Result result = passes_opaque(passes);
+    state->frame->geometry_passes = 1;
     for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
         result = run_peel(state, peel, &more);
     return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;

@@ -141,6 +141,7 @@ void pass_counts_add(PassCounts *sum, const PassCounts *tile)
     sum->fragments += tile->fragments;
     sum->peeled += tile->peeled;
     sum->repeated += tile->repeated;
+    sum->shaded += tile->shaded;
     sum->remaining += tile->remaining;
     sum->residual_pixels += tile->residual_pixels;
     sum->residual_max =
@@ -152,6 +153,7 @@ void pass_counts_report(const PassCounts *counts, Frame *frame)
     frame->layers.max = counts->max;
     frame->layers.fragments = counts->fragments;
     frame->layers.repeated = counts->repeated;
+    frame->fragments_shaded = counts->shaded;
     frame->layers.lost_to_pass_limit = counts->remaining;
     frame->layers.lost_to_ties =
         counts->fragments - (counts->peeled - counts->repeated) - counts->remaining;

@@ -77,9 +77,14 @@ static inline bool pass_hidden(const Pass *pass, FragmentDepth depth, uint32_t o
 /* Whether an earlier peel took it, or the layer in front of it. */
 static inline bool pass_peeled(const Pass *pass, FragmentDepth depth, uint32_t previous)
 {
-    if (pass->desc->peel_test == PEEL_TEST_RAW) {
+    float bias = pass->desc->bias;
+    bool raw = pass->desc->peel_test == PEEL_TEST_RAW;
+    if (raw || bias > 0.0f) {
         float fetched = depth_fetch(pass->depth_format, previous);
-        return pass->reversed ? depth.z >= fetched : depth.z <= fetched;
+        float z = raw ? depth.z : depth_fetch(pass->depth_format, depth.key);
+        if (bias > 0.0f)
+            fetched = pass->reversed ? op_sub(fetched, bias) : op_add(fetched, bias);
+        return pass->reversed ? z >= fetched : z <= fetched;
     }
     return pass->reversed ? depth.key >= previous : depth.key <= previous;
 }
@@ -102,7 +107,7 @@ static inline bool pass_depth_test(const Pass *pass, uint32_t key, uint32_t stor
 /* Counts of one tile or of the frame; see LayerStats. */
 typedef struct PassCounts {
     uint32_t max;
-    uint64_t fragments, peeled, repeated, remaining;
+    uint64_t fragments, peeled, repeated, remaining, shaded;
     uint64_t residual_pixels;
     float residual_max;
 } PassCounts;
@@ -112,6 +117,14 @@ typedef struct PassCounts {
 static inline bool pass_may_leave(const Pass *pass, int peels, int limit)
 {
     return peels > 0 && (peels == limit || pass->desc->peel_test == PEEL_TEST_RAW);
+}
+
+/* Of a method that draws the opaque list once and then the transparent list peel by peel, until one
+ * yields nothing or the limit. */
+static inline int pass_geometry_passes(const Pass *pass, int peels)
+{
+    int limit = pass->desc->passes ? pass->desc->passes : PASSES_MAX;
+    return 1 + peels + (peels < limit);
 }
 
 /* One pixel's transparent fragments in front of the opaque depth. */

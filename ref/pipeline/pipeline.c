@@ -1,13 +1,13 @@
 #include "ref/pipeline/pipeline.h"
 
 #include "base/clock.h"
-#include "ref/pipeline/methods/peel.h"
+#include "ref/pipeline/methods/methods.h"
 #include "ref/pipeline/pass.h"
 #include "ref/pipeline/tile.h"
 
 #include <stdio.h>
 
-/* One row per method: see frame/method.h. */
+/* One row per method: see frame/method.h. tile is NULL where there is only the definition. */
 static const struct {
     Result (*definition)(Pass *pass, TraceSink *trace, Frame *frame);
     Result (*tile)(Pass *pass, Frame *frame);
@@ -21,7 +21,7 @@ static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trac
     Result result = pass_create(scene, desc, &pass);
     if (result != RESULT_OK)
         return result;
-    bool definition = trace || desc->ref_path == REF_PATH_DEFINITION;
+    bool definition = trace || desc->ref_path == REF_PATH_DEFINITION || !methods[desc->method].tile;
     out->threads = pool_threads(pass.pool);
     out->fused = pass.fused;
     snprintf(out->version, sizeof out->version, "Peel %s", PEEL_VERSION);

@@ -67,6 +67,7 @@ static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
             fragment_decode(pass, stage_key(&source->depth, stage_pixel(pass, x, y)), x, y, &texel);
             if (!shade_pixel(&pass->view, &form, &texel, color))
                 continue;
+            stage->tile_counts[tile].shaded++;
             void *pixel = image_pixel(&stage->accum, x, row);
             if (seed)
                 blend_opaque_seed(stage->accum.format, color, pixel);

@@ -182,7 +182,7 @@ static inline void gather(Gathered *gathered, int pixel, const Texel *texel)
 
 /* Lights the winners in tile->index, at the depths in tile->key, which are of the transparent list
  * or of the opaque one, and blends them. */
-static void light(const TilePass *tile, bool transparent)
+static void light(const TilePass *tile, bool transparent, PassCounts *counts)
 {
     const Pass *pass = tile->pass;
     const PrimitiveList *list = transparent ? &pass->geometry.transparent : &pass->geometry.opaque;
@@ -207,8 +207,10 @@ static void light(const TilePass *tile, bool transparent)
             fragment_shade(pass, &setup, &list->items[index], x, y, &texel);
             texel_quantise(&pass->layout, &texel);
             fragment_decode(pass, tile->key[pixel], x, y, &texel);
-            if (texel.diffuse[3] > SHADING_ALPHA_TEST)
+            if (texel.diffuse[3] > SHADING_ALPHA_TEST) {
                 gather(&gathered, pixel, &texel);
+                counts->shaded++;
+            }
         }
     if (gathered.count > 0)
         light_batch(&gathered);
@@ -247,7 +249,7 @@ static int peel_tile(const TileJob *job, TilePass *tile, uint32_t number, PassCo
         counts->peeled += drawn;
         counts->repeated += repeated;
         if (!job->dry)
-            light(tile, true);
+            light(tile, true, counts);
         tile->previous = tile->key;
     }
     return peel;
@@ -313,7 +315,7 @@ static __attribute__((noinline)) void render_tile(const TileJob *job, uint32_t n
     count_tile(job, &tile, number, job->peels[number], counts);
     tile.key = scratch->opaque_key;
     tile.index = scratch->opaque_index;
-    light(&tile, false);
+    light(&tile, false, counts);
     resolve_tile(job, &tile);
 }
 
@@ -389,6 +391,7 @@ Result TILE_RENDER(Pass *pass, Frame *frame)
             pass_counts_add(&sum, &job.counts[tile]);
         pass_counts_report(&sum, frame);
         frame->peels = most_peels(&job);
+        frame->geometry_passes = pass_geometry_passes(pass, frame->peels);
     }
     for (int i = 0; job.scratch && i < workers; i++)
         free(job.scratch[i].setups);

@@ -240,7 +240,9 @@ Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace
     *out = (Frame){0};
     Clock start = clock_now();
     View view;
-    Result result = view_build(scene, desc, &view);
+    RenderDesc in_order = *desc; /* triangles are numbered as they come */
+    in_order.draw_order = DRAW_ORDER_SCENE;
+    Result result = view_build(scene, &in_order, &view);
     if (result != RESULT_OK)
         return result;
     result = render_view(scene, desc, &view, trace, out);

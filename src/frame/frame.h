@@ -16,6 +16,7 @@ typedef struct LayerStats {
     uint64_t lost_to_ties;       /* of those, never peeled: equal depth */
     uint64_t lost_to_pass_limit; /* of those, never peeled: passes ended first */
     uint64_t repeated;           /* peeled again at the depth of the previous peel */
+    uint64_t lost_to_overflow;   /* of those, for which a list had no room */
     uint64_t coverage_differs;   /* truth: fragments that exact, unsnapped coverage would change */
 } LayerStats;
 
@@ -23,6 +24,8 @@ typedef struct Frame {
     Image final;   /* FORMAT_RGBA32F: linear RGB over the background, A = coverage (1 − T) */
     Image display; /* FORMAT_RGBA8: display-transformed, A = 255 */
     int peels;     /* geometry passes over the transparent list that yielded a fragment */
+    int geometry_passes;       /* over a list of the scene, all told */
+    uint64_t fragments_shaded; /* lit and blended: opaque and transparent; ref only */
     LayerStats layers;
     double residual_max;      /* greatest transmittance in front of fragments the limit lost */
     uint64_t residual_pixels; /* pixels with such fragments */

@@ -5,7 +5,7 @@
 static const MethodInfo methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {METHOD_PEEL, "peel",
                      "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
-                     "deferred depth peeling, front to back", true},
+                     "deferred depth peeling, front to back", true, true},
 };
 
 const MethodInfo *method_info(MethodId id)

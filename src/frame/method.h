@@ -9,7 +9,8 @@ typedef struct MethodInfo {
     const char *name; /* as on the command line */
     const char *paper;
     const char *summary;
-    bool exact; /* converges to the sorted result with enough passes, ties apart */
+    bool exact;  /* converges to the sorted result with enough passes, ties apart */
+    bool layers; /* ref traces peel.K.primitive: its layers, front to back */
 } MethodInfo;
 
 const MethodInfo *method_info(MethodId id);      /* static */

@@ -7,11 +7,41 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef enum MethodId {
     METHOD_PEEL = 0,
     METHOD_COUNT
 } MethodId;
+/* How a surface is lit: the original's point lights, or one directional light as in the WebGPU
+ * tutorial; forward methods only. */
+typedef enum ShadingModel {
+    SHADING_GGX = 0,
+    SHADING_PHONG
+} ShadingModel;
+/* The order in which instances are drawn; primitive ids stay those of the scene. */
+typedef enum DrawOrder {
+    DRAW_ORDER_SCENE = 0,
+    DRAW_ORDER_REVERSE,
+    DRAW_ORDER_SHUFFLE /* by draw_seed */
+} DrawOrder;
+/* What the painter sorts by its centroid's distance. */
+typedef enum SortUnit {
+    SORT_OBJECTS = 0,
+    SORT_TRIANGLES
+} SortUnit;
+/* Weights of McGuire and Bavoil 2013, by the paper's equation. */
+typedef enum WeightEquation {
+    WEIGHT_9 = 0,
+    WEIGHT_7,
+    WEIGHT_8,
+    WEIGHT_10
+} WeightEquation;
+/* What is done to the lit layers of a linked list. */
+typedef enum PostEffect {
+    POST_NONE = 0,
+    POST_EDGES /* outlines, from normals and depths */
+} PostEffect;
 typedef enum GBufferFormat {
     GBUFFER_FULL = 0,
     GBUFFER_SEED,   /* the original's */
@@ -107,7 +137,15 @@ typedef struct RenderDesc {
     GgxForm ggx;
     bool back_light; /* transparent surfaces reflect lights behind them (frame/shading.h) */
     OpaqueBlend opaque_blend;
-    bool unfused; /* model a driver without fused multiply-add */
+    float bias; /* a peel takes what lies farther behind the previous one than this */
+    ShadingModel shading;
+    DrawOrder draw_order;
+    uint64_t draw_seed;
+    SortUnit sort;         /* of METHOD_PAINTER */
+    WeightEquation weight; /* of METHOD_WEIGHTED_BLENDED */
+    int nodes_per_pixel;   /* of METHOD_LINKED_LIST: room on average; 0: as many as are needed */
+    PostEffect post;       /* of METHOD_LINKED_LIST */
+    bool unfused;          /* model a driver without fused multiply-add */
     RefPath ref_path;
     SimdChoice simd;
     int threads;       /* 0: one per processor */

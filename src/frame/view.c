@@ -1,6 +1,7 @@
 #include "frame/view.h"
 
 #include "base/memory.h"
+#include "base/random.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -114,6 +115,22 @@ static void add_draws(const Scene *scene, CullMode cull, const Matrix *view, Vie
     }
 }
 
+/* Which draw comes first changes; their primitive ids do not. */
+static void reorder_draws(const RenderDesc *desc, View *out)
+{
+    Random random = random_seed(desc->draw_seed);
+    for (size_t i = out->draw_count; i-- > 1;) {
+        size_t other = desc->draw_order == DRAW_ORDER_SHUFFLE
+                           ? (size_t)(random_bits(&random) % (i + 1))
+                           : out->draw_count - 1 - i;
+        if (desc->draw_order == DRAW_ORDER_REVERSE && other >= i)
+            continue;
+        Draw draw = out->draws[i];
+        out->draws[i] = out->draws[other];
+        out->draws[other] = draw;
+    }
+}
+
 static void add_lights(const Scene *scene, const RenderDesc *desc, const Matrix *view, View *out)
 {
     double degrees = fmod(scene->light_degrees_per_second * desc->time, 360.0);
@@ -191,6 +208,8 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
         return RESULT_NO_MEMORY;
     }
     add_draws(scene, desc->cull, &view, out);
+    if (desc->draw_order != DRAW_ORDER_SCENE)
+        reorder_draws(desc, out);
     add_lights(scene, desc, &view, out);
     memcpy(out->ambient, scene->ambient, sizeof out->ambient);
     memcpy(out->background, scene->background, sizeof out->background);

@@ -16,4 +16,15 @@ void blend_under(PixelFormat format, const float source[4], void *pixel);
 /* glBlendFunc(DST_ALPHA, ONE) on all four channels: the original program's opaque pass. */
 void blend_opaque_seed(PixelFormat format, const float source[4], void *pixel);
 
+/* glBlendFuncSeparate(ONE, ONE_MINUS_SRC_ALPHA, ZERO, ONE_MINUS_SRC_ALPHA): a premultiplied source
+ * in front of what pixel holds; pixel's alpha is transmittance. */
+void blend_over(PixelFormat format, const float source[4], void *pixel);
+
+/* glBlendFunc(ONE, ONE): all channels of the format are summed. */
+void blend_add(PixelFormat format, const float source[4], void *pixel);
+
+/* glBlendEquation(GL_MAX): the greater of each channel; the pixel's where they are equal or one is
+ * NaN. */
+void blend_max(PixelFormat format, const float source[4], void *pixel);
+
 #endif

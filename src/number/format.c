@@ -10,6 +10,7 @@ static const FormatInfo infos[FORMAT_COUNT + 1] = {
     [FORMAT_RGBA16] = {"rgba16", KIND_UNORM, 4, 2, 65535},
     [FORMAT_RGBA8] = {"rgba8", KIND_UNORM, 4, 1, 255},
     [FORMAT_RG16] = {"rg16", KIND_UNORM, 2, 2, 65535},
+    [FORMAT_RG32F] = {"rg32f", KIND_FLOAT, 2, 4, 0},
     [FORMAT_D32F] = {"d32f", KIND_FLOAT, 1, 4, 0},
     [FORMAT_D24] = {"d24", KIND_UNORM, 1, 4, 16777215},
     [FORMAT_D16] = {"d16", KIND_UNORM, 1, 4, 65535},

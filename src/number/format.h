@@ -14,10 +14,11 @@ typedef enum PixelFormat {
     FORMAT_RGBA16, /* unorm */
     FORMAT_RGBA8,  /* unorm */
     FORMAT_RG16,   /* unorm */
-    FORMAT_D32F,   /* window depth as a float */
-    FORMAT_D24,    /* window depth as a 24-bit unorm in a uint32_t */
-    FORMAT_D16,    /* as a 16-bit unorm, in a uint32_t too */
-    FORMAT_R32UI,  /* an index; UINT32_MAX is none */
+    FORMAT_RG32F,
+    FORMAT_D32F,  /* window depth as a float */
+    FORMAT_D24,   /* window depth as a 24-bit unorm in a uint32_t */
+    FORMAT_D16,   /* as a 16-bit unorm, in a uint32_t too */
+    FORMAT_R32UI, /* an index; UINT32_MAX is none */
     FORMAT_COUNT,
     FORMAT_NONE = FORMAT_COUNT /* of a buffer that is not stored: no bytes */
 } PixelFormat;

@@ -7,7 +7,7 @@
  * the previous peel and in front of the opaque depth, and a lighting pass blended under; then the
  * opaque lighting pass, blended under; then the background. Two depth buffers take turns; the
  * color buffers of the peels are shared. */
-#include "ref/pipeline/methods/peel.h"
+#include "ref/pipeline/methods/methods.h"
 
 #include "ref/pipeline/stage.h"
 
@@ -120,6 +120,7 @@ static Result peels(Stage *stage)
         peel->previous_depth = current;
         stage->frame->peels = peel->peel + 1;
     }
+    stage->frame->geometry_passes = pass_geometry_passes(stage->pass, stage->frame->peels);
     return pass_may_leave(stage->pass, stage->frame->peels, limit)
                ? stage_run(stage, remaining_tile)
                : RESULT_OK;

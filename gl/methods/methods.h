@@ -1,0 +1,11 @@
+/* The methods on OpenGL: one file each. */
+#ifndef PEEL_GL_METHODS_H
+#define PEEL_GL_METHODS_H
+
+#include "../passes.h"
+
+/* Each draws the frame up to the resolve pass and fills out->peels, geometry_passes and what it
+ * counts in out->layers. With a trace, every buffer of it but "display" is read back. */
+Result gl_peel(Passes *passes, Frame *out);
+
+#endif

@@ -1,0 +1,10 @@
+/* The definition paths of the methods: one file each. */
+#ifndef PEEL_REF_METHODS_H
+#define PEEL_REF_METHODS_H
+
+#include "ref/pipeline/pass.h"
+
+/* Each renders the whole frame. frame's images are allocated; trace may be NULL. */
+Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
+
+#endif
