@@ -6,6 +6,10 @@ static const MethodInfo methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {METHOD_PEEL, "peel",
                      "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
                      "deferred depth peeling, front to back", true, true},
+    [METHOD_FORWARD] = {METHOD_FORWARD, "forward",
+                        "Everitt, \"Interactive Order-Independent Transparency\", 2001; Bavoil and "
+                        "Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
+                        "front-to-back peeling, shaded in the geometry pass", true, true},
 };
 
 const MethodInfo *method_info(MethodId id)
