@@ -25,6 +25,7 @@ typedef struct RenderOptions {
     RenderDesc desc;
     const char *camera; /* name or index; NULL: the first */
     bool has_opacity, has_background;
+    bool all_methods; /* --method all, of commands that take it */
     double opacity, background[3];
     FmaChoice fma;
     /* −1: as the profile or the default has it; else the index of the name that was given, which

@@ -112,7 +112,8 @@ static const struct argp_option render_options[] = {
     {"time", KEY_TIME, "SECONDS", 0, "Turns the lights (default 0)", 1},
     {"opacity", KEY_OPACITY, "A", 0, "Opacity 0 to 1 of every material; below 1 all are peeled", 1},
     {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)", 1},
-    {"method", KEY_METHOD, "NAME", 0, "Transparency method (default peel)", 1},
+    {"method", KEY_METHOD, "NAME", 0,
+     "Transparency method (default peel; compare also takes all); see 'peel methods'", 1},
     {"passes", KEY_PASSES, "N|auto", 0,
      "At most N peels; auto (default) until a peel yields no fragment", 1},
     {"profile", KEY_PROFILE, "NAME", 0,
@@ -228,13 +229,14 @@ error_t options_gl(const char *text)
     return error;
 }
 
-static error_t parse_method(const char *text, RenderDesc *desc)
+static error_t parse_method(const char *text, RenderOptions *options)
 {
     const MethodInfo *method = method_find(text);
-    if (method) {
-        desc->method = method->id;
+    options->all_methods = strcmp(text, "all") == 0;
+    if (method)
+        options->desc.method = method->id;
+    if (method || options->all_methods)
         return 0;
-    }
     char expected[256] = "";
     for (int i = 0; i < METHOD_COUNT; i++)
         append_name(expected, sizeof expected, i, METHOD_COUNT, method_info((MethodId)i)->name);
@@ -344,7 +346,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
     case KEY_BACKGROUND:
         return parse_background(argument, options);
     case KEY_METHOD:
-        return parse_method(argument, desc);
+        return parse_method(argument, options);
     case KEY_PASSES:
         return parse_passes(argument, desc);
     case KEY_BIAS:
