@@ -20,6 +20,7 @@
     X(BLENDFUNCSEPARATE, BlendFuncSeparate)                                                        \
     X(CHECKNAMEDFRAMEBUFFERSTATUS, CheckNamedFramebufferStatus)                                    \
     X(CLAMPCOLOR, ClampColor)                                                                      \
+    X(CLEARNAMEDBUFFERDATA, ClearNamedBufferData)                                                  \
     X(CLEARNAMEDFRAMEBUFFERFV, ClearNamedFramebufferfv)                                            \
     X(CLIPCONTROL, ClipControl)                                                                    \
     X(COMPILESHADER, CompileShader)                                                                \
@@ -63,9 +64,11 @@
     X(NAMEDFRAMEBUFFERREADBUFFER, NamedFramebufferReadBuffer)                                      \
     X(NAMEDFRAMEBUFFERTEXTURE, NamedFramebufferTexture)                                            \
     X(PIXELSTOREI, PixelStorei)                                                                    \
+    X(PROGRAMUNIFORM1F, ProgramUniform1f)                                                          \
     X(PROGRAMUNIFORM1I, ProgramUniform1i)                                                          \
     X(PROGRAMUNIFORM3FV, ProgramUniform3fv)                                                        \
     X(PROGRAMUNIFORM4FV, ProgramUniform4fv)                                                        \
+    X(PROGRAMUNIFORM4IV, ProgramUniform4iv)                                                        \
     X(PROGRAMUNIFORMMATRIX3FV, ProgramUniformMatrix3fv)                                            \
     X(PROGRAMUNIFORMMATRIX4FV, ProgramUniformMatrix4fv)                                            \
     X(READPIXELS, ReadPixels)                                                                      \

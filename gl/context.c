@@ -1,17 +1,12 @@
 #include "context.h"
 
-#include <GL/osmesa.h>
+#include "platform.h"
 
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-/* The window that OSMesa insists on; nothing is drawn to it. */
-enum {
-    WINDOW_PIXELS = 16
-};
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -38,11 +33,13 @@ const char *__lsan_default_options(void)
 #endif
 
 struct Context {
-    OSMesaContext handle;
+    void *handle; /* the platform's */
     ContextLimits limits;
     char failure[512]; /* the first error the driver reported, "" if none */
-    unsigned char window[WINDOW_PIXELS * WINDOW_PIXELS * 4];
 };
+
+static const Platform *platform = &platform_osmesa;
+static Context *current;
 
 static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity,
                                 GLsizei length, const GLchar *message, const void *user)
@@ -55,38 +52,18 @@ static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum se
         snprintf(context->failure, sizeof context->failure, "%s", message);
 }
 
-/* Loaded at run time: without OSMesa, ref and truth still work and gl says what is missing. */
-static struct {
-    OSMesaContext (*create)(const int *attributes, OSMesaContext shared);
-    GLboolean (*make_current)(OSMesaContext context, void *buffer, GLenum type, GLsizei width,
-                              GLsizei height);
-    void (*destroy)(OSMesaContext context);
-    OSMESAproc (*proc_address)(const char *name);
-} osmesa;
-
-static Result load_osmesa(void)
+Result platform_load(const char *file, const char *packages, const PlatformSymbol *symbols,
+                     size_t count)
 {
-    if (osmesa.proc_address)
-        return RESULT_OK;
-    /* Never closed: Mesa's threads and its exit handlers live in it. */
-    void *library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+    void *library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     if (!library)
-        return result_fail(RESULT_NO_GL, "OpenGL: %s (Debian's package libosmesa6)", dlerror());
-    const struct {
-        const char *name;
-        void *slot;
-    } functions[] = {
-        {"OSMesaCreateContextAttribs", &osmesa.create},
-        {"OSMesaMakeCurrent", &osmesa.make_current},
-        {"OSMesaDestroyContext", &osmesa.destroy},
-        {"OSMesaGetProcAddress", &osmesa.proc_address},
-    };
-    for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
-        void *address = dlsym(library, functions[i].name);
+        return result_fail(RESULT_NO_GL, "OpenGL: %s (Debian's %s)", dlerror(), packages);
+    for (size_t i = 0; i < count; i++) {
+        void *address = dlsym(library, symbols[i].name);
         if (!address)
-            return result_fail(RESULT_NO_GL, "OSMesa: %s is missing from libOSMesa.so.8",
-                               functions[i].name);
-        memcpy(functions[i].slot, &address, sizeof address);
+            return result_fail(RESULT_NO_GL, "OpenGL: %s is missing from %s", symbols[i].name,
+                               file);
+        memcpy(symbols[i].slot, &address, sizeof address);
     }
     return RESULT_OK;
 }
@@ -98,11 +75,6 @@ static Result check_driver_name(void)
     if (!name || !*name || strcmp(name, "llvmpipe") == 0 || strcmp(name, "softpipe") == 0)
         return RESULT_OK;
     return result_fail(RESULT_NO_GL, "GALLIUM_DRIVER=%s: expected llvmpipe or softpipe", name);
-}
-
-static ApiFunction lookup(const char *name)
-{
-    return (ApiFunction)osmesa.proc_address(name);
 }
 
 /* llvmpipe reads its environment once, when the first context is made. */
@@ -119,6 +91,7 @@ static void prepare_environment(int threads)
     const char *home = getenv("XDG_CACHE_HOME") ? getenv("XDG_CACHE_HOME") : getenv("HOME");
     if (!home || access(home, W_OK) != 0)
         setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    setenv("EGL_LOG_LEVEL", "fatal", 0); /* its complaints, too */
     if (threads > 0) {
         char text[16];
         snprintf(text, sizeof text, "%d", threads);
@@ -138,8 +111,8 @@ static Result check_driver(Context *context)
     GLint major = 0, minor = 0, samples = 0;
     gl.GetIntegerv(GL_MAJOR_VERSION, &major);
     gl.GetIntegerv(GL_MINOR_VERSION, &minor);
-    if (major * 10 + minor < 46)
-        return result_fail(RESULT_NO_GL, "OpenGL: version 4.6 expected, %s has %d.%d",
+    if (major * 10 + minor < 45)
+        return result_fail(RESULT_NO_GL, "OpenGL: version 4.5 expected, %s has %d.%d",
                            (const char *)gl.GetString(GL_RENDERER), major, minor);
     gl.GetIntegerv(GL_SAMPLES, &samples);
     if (samples != 0)
@@ -156,27 +129,13 @@ static Result check_driver(Context *context)
 
 static Result start(Context *context)
 {
-    static const int attributes[] = {OSMESA_FORMAT,
-                                     OSMESA_RGBA,
-                                     OSMESA_DEPTH_BITS,
-                                     0,
-                                     OSMESA_PROFILE,
-                                     OSMESA_CORE_PROFILE,
-                                     OSMESA_CONTEXT_MAJOR_VERSION,
-                                     4,
-                                     OSMESA_CONTEXT_MINOR_VERSION,
-                                     6,
-                                     0};
     Result result = check_driver_name();
     if (result == RESULT_OK)
-        result = load_osmesa();
+        result = platform->open(&context->handle);
     if (result != RESULT_OK)
         return result;
-    context->handle = osmesa.create(attributes, NULL);
-    if (!context->handle || !osmesa.make_current(context->handle, context->window, GL_UNSIGNED_BYTE,
-                                                 WINDOW_PIXELS, WINDOW_PIXELS))
-        return result_fail(RESULT_NO_GL, "OSMesa: cannot make an OpenGL 4.6 core context");
-    result = api_load(lookup);
+    current = context;
+    result = api_load(platform->lookup);
     if (result == RESULT_OK)
         result = check_driver(context);
     if (result != RESULT_OK)
@@ -211,10 +170,26 @@ void context_close(Context *context)
     if (!context)
         return;
     if (context->handle) {
-        osmesa.make_current(NULL, NULL, 0, 0, 0);
-        osmesa.destroy(context->handle);
+        if (current == context) {
+            platform->use(NULL);
+            current = NULL;
+        }
+        platform->close(context->handle);
     }
     free(context);
+}
+
+void context_choose(ContextKind kind)
+{
+    platform = kind == CONTEXT_EGL ? &platform_egl : &platform_osmesa;
+}
+
+Result context_use(Context *context)
+{
+    if (current != context && !platform->use(context->handle))
+        return result_fail(RESULT_NO_GL, "OpenGL: cannot return to a context");
+    current = context;
+    return RESULT_OK;
 }
 
 const ContextLimits *context_limits(const Context *context)

@@ -1,4 +1,4 @@
-/* An OpenGL 4.6 core context on OSMesa, current on the thread that opened it. */
+/* An OpenGL core context, 4.5 at least, on OSMesa or EGL, current on the thread that opened it. */
 #ifndef PEEL_GL_CONTEXT_H
 #define PEEL_GL_CONTEXT_H
 
@@ -15,11 +15,22 @@ typedef struct ContextLimits {
     int storage_block; /* bytes */
 } ContextLimits;
 
+typedef enum ContextKind {
+    CONTEXT_OSMESA = 0,
+    CONTEXT_EGL /* without a surface */
+} ContextKind;
+
+/* Where contexts come from; for the process, before its first one. */
+void context_choose(ContextKind kind);
+
 /* Opens a context, loads gl and reports driver errors to it. threads > 0 asks llvmpipe for that
  * many rasterizer threads; only the first context of a process can, and only where LP_NUM_THREADS
  * is not set. NO_GL when there is no such context. The caller closes it on the same thread. */
 Result context_open(int threads, Context **out);
 void context_close(Context *context); /* NULL is fine */
+
+/* Makes it current again after another one was opened or closed on this thread. */
+Result context_use(Context *context);
 
 const ContextLimits *context_limits(const Context *context);
 

@@ -63,7 +63,8 @@ static __attribute__((noinline)) Result render_in(Context *context, const Scene 
         passes_resolve(&passes);
         result = read_result(&passes, trace, out);
     }
-    out->buffer_bytes = passes.targets.bytes + passes.meshes.bytes + passes.lights.bytes;
+    out->buffer_bytes =
+        passes.targets.bytes + passes.meshes.bytes + passes.lights.bytes + passes.textures.bytes;
     passes_destroy(&passes);
     clock_elapsed(&start, &out->time_ms, &out->cpu_ms);
     return result;

@@ -29,6 +29,7 @@ typedef struct Passes {
     Targets targets;
     Meshes meshes;
     LightBuffer lights;
+    Textures textures;
     GLuint geometry[GEOMETRY_PASSES], lighting[LIGHTING_PASSES], resolve; /* programs */
     GLuint samples;                                                       /* query */
 } Passes;
@@ -46,8 +47,8 @@ Result passes_opaque_geometry(Passes *passes);
  * *samples is the number of fragments that passed, 0 when nothing is left to peel. */
 Result passes_peel_geometry(Passes *passes, int peel, uint64_t *samples);
 
-/* Shades the peel and blends it under the accumulation. */
-void passes_peel_lighting(Passes *passes);
+/* Shades peel `peel`, just drawn, and blends it under the accumulation. */
+void passes_peel_lighting(Passes *passes, int peel);
 /* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says. */
 void passes_opaque_lighting(Passes *passes);
 /* Accumulation and background to the final image, and its display form. */

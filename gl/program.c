@@ -6,7 +6,7 @@
 
 /* Nine digits give back the same float. */
 #define PRELUDE_FORMAT                                                                             \
-    "#version 460 core\n"                                                                          \
+    "#version 450 core\n"                                                                          \
     "#define TINY %.9g\n"                                                                          \
     "#define ALPHA_TEST %.9g\n"                                                                    \
     "#define ROUGHNESS_MIN %.9g\n"                                                                 \

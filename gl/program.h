@@ -12,8 +12,10 @@ extern const char shader_lighting_frag[];
 extern const char shader_resolve_frag[];
 extern const char shader_fuses_vert[];
 extern const char shader_fuses_frag[];
+extern const char shader_experiment_vert[];
+extern const char shader_experiment_frag[];
 
-/* Compiles and links vertex and fragment source, each behind "#version 460 core", the constants
+/* Compiles and links vertex and fragment source, each behind "#version 450 core", the constants
  * of frame/shading.h and `defines` (lines of "#define ...\n", "" for none). name is for messages.
  * NO_GL with the compiler's text on failure, and *out is 0. The caller deletes the program. */
 Result program_build(const char *name, const char *defines, const char *vertex,

@@ -1,21 +1,8 @@
 #include "readback.h"
 
+#include "formats.h"
+
 #include <string.h>
-
-typedef struct Transfer {
-    GLenum format, type;
-} Transfer;
-
-static const Transfer transfers[FORMAT_COUNT] = {
-    [FORMAT_RGBA32F] = {GL_RGBA, GL_FLOAT},
-    [FORMAT_RGBA16F] = {GL_RGBA, GL_HALF_FLOAT},
-    [FORMAT_RGBA16] = {GL_RGBA, GL_UNSIGNED_SHORT},
-    [FORMAT_RGBA8] = {GL_RGBA, GL_UNSIGNED_BYTE},
-    [FORMAT_D32F] = {GL_DEPTH_COMPONENT, GL_FLOAT},
-    [FORMAT_D24] = {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
-    [FORMAT_D16] = {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
-    [FORMAT_R32UI] = {GL_RED_INTEGER, GL_UNSIGNED_INT},
-};
 
 static void swap_rows(unsigned char *a, unsigned char *b, size_t bytes)
 {
@@ -38,8 +25,8 @@ static void flip(const Targets *targets, PixelFormat format, void *pixels)
 
 static void read_pixels(const Targets *targets, PixelFormat format, ReadbackRows rows, void *pixels)
 {
-    const Transfer *transfer = &transfers[format];
-    gl.ReadPixels(0, 0, targets->width, targets->height, transfer->format, transfer->type, pixels);
+    const GlFormat *names = formats_gl(format);
+    gl.ReadPixels(0, 0, targets->width, targets->height, names->format, names->type, pixels);
     if (rows == READBACK_TOP_DOWN)
         flip(targets, format, pixels);
 }
@@ -56,14 +43,8 @@ void readback_depth(const Targets *targets, GLuint framebuffer, ReadbackRows row
 {
     gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     read_pixels(targets, targets->depth_format, rows, pixels);
-    if (targets->depth_format == FORMAT_D32F)
-        return;
-    /* The driver widens 24 or 16 bits to 32 by repeating the leading ones. */
-    int shift = targets->depth_format == FORMAT_D24 ? 8 : 16;
-    uint32_t *codes = pixels;
-    size_t count = (size_t)targets->width * (size_t)targets->height;
-    for (size_t i = 0; i < count; i++)
-        codes[i] >>= shift;
+    formats_narrow_depth(targets->depth_format, pixels,
+                         (size_t)targets->width * (size_t)targets->height);
 }
 
 static Result put(const Targets *targets, int peel, const char *what, PixelFormat format,
@@ -88,7 +69,10 @@ Result readback_trace_gbuffer(const Targets *targets, GLuint framebuffer, int pe
     Result result = put(targets, peel, "depth", targets->depth_format, trace, scratch);
     for (int i = 0; i < GBUFFER_TARGETS && result == RESULT_OK; i++) {
         PixelFormat format = targets->color_format[i];
-        readback_color(targets, framebuffer, i, format, READBACK_TOP_DOWN, scratch);
+        if (format == FORMAT_NONE)
+            continue;
+        readback_color(targets, framebuffer, targets->attachment[i], format, READBACK_TOP_DOWN,
+                       scratch);
         result = put(targets, peel, names[i], format, trace, scratch);
     }
     return result;

@@ -1,17 +1,11 @@
 #include "targets.h"
 
 #include "base/memory.h"
+#include "formats.h"
 #include "readback.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static const GLenum internal_formats[FORMAT_COUNT] = {
-    [FORMAT_RGBA32F] = GL_RGBA32F,         [FORMAT_RGBA16F] = GL_RGBA16F,
-    [FORMAT_RGBA16] = GL_RGBA16,           [FORMAT_RGBA8] = GL_RGBA8,
-    [FORMAT_D32F] = GL_DEPTH_COMPONENT32F, [FORMAT_D24] = GL_DEPTH_COMPONENT24,
-    [FORMAT_D16] = GL_DEPTH_COMPONENT16,   [FORMAT_R32UI] = GL_R32UI,
-};
 
 static void choose_formats(const RenderDesc *desc, Targets *out)
 {
@@ -22,6 +16,8 @@ static void choose_formats(const RenderDesc *desc, Targets *out)
     out->color_format[GBUFFER_POSITION] = layout.position;
     out->color_format[GBUFFER_DIFFUSE] = layout.diffuse;
     out->color_format[GBUFFER_MATERIAL] = layout.material;
+    for (int i = 0; i < GBUFFER_TARGETS; i++)
+        out->attachment[i] = out->color_format[i] == FORMAT_NONE ? -1 : out->color_count++;
 }
 
 /* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float: the two
@@ -73,7 +69,7 @@ static GLuint make_texture(const Targets *targets, PixelFormat format)
 {
     GLuint texture;
     gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);
-    gl.TextureStorage2D(texture, 1, internal_formats[format], targets->width, targets->height);
+    gl.TextureStorage2D(texture, 1, formats_gl(format)->internal, targets->width, targets->height);
     gl.TextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl.TextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;
@@ -85,6 +81,8 @@ static void make_textures(const RenderDesc *desc, Targets *out)
     for (int i = 0; i < 2; i++)
         out->peel_depth[i] = make_texture(out, out->depth_format);
     for (int i = 0; i < GBUFFER_TARGETS; i++) {
+        if (out->attachment[i] < 0)
+            continue;
         out->opaque_color[i] = make_texture(out, out->color_format[i]);
         out->peel_color[i] = make_texture(out, out->color_format[i]);
     }
@@ -121,13 +119,22 @@ static Result make_framebuffer(int count, const GLuint *color, GLuint depth, GLu
     return RESULT_OK;
 }
 
+/* The G-buffer's textures in the order of their attachments, without gaps. */
+static Result make_gbuffer(const Targets *targets, const GLuint color[GBUFFER_TARGETS],
+                           GLuint depth, GLuint *out)
+{
+    GLuint attached[GBUFFER_TARGETS];
+    for (int i = 0; i < GBUFFER_TARGETS; i++)
+        if (targets->attachment[i] >= 0)
+            attached[targets->attachment[i]] = color[i];
+    return make_framebuffer(targets->color_count, attached, depth, out);
+}
+
 static Result make_framebuffers(Targets *out)
 {
-    Result result = make_framebuffer(GBUFFER_TARGETS, out->opaque_color, out->opaque_depth,
-                                     &out->opaque_buffer);
+    Result result = make_gbuffer(out, out->opaque_color, out->opaque_depth, &out->opaque_buffer);
     for (int i = 0; i < 2 && result == RESULT_OK; i++)
-        result = make_framebuffer(GBUFFER_TARGETS, out->peel_color, out->peel_depth[i],
-                                  &out->peel_buffer[i]);
+        result = make_gbuffer(out, out->peel_color, out->peel_depth[i], &out->peel_buffer[i]);
     if (result == RESULT_OK)
         result = make_framebuffer(1, &out->accum, 0, &out->plain_buffer);
     const GLuint resolved[] = {out->final, out->display};

@@ -19,7 +19,9 @@ enum {
 typedef struct Targets {
     int width, height;
     PixelFormat depth_format, accum_format;
-    PixelFormat color_format[GBUFFER_TARGETS];
+    PixelFormat color_format[GBUFFER_TARGETS]; /* FORMAT_NONE: not stored */
+    int attachment[GBUFFER_TARGETS];           /* its draw buffer and shader output; −1: none */
+    int color_count;                           /* of those stored */
     GLuint opaque_depth, opaque_color[GBUFFER_TARGETS];
     /* R32UI copies of 24-bit depths that a fetch would confuse; 0 where they are not needed. */
     GLuint opaque_code, previous_code;

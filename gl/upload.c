@@ -31,20 +31,42 @@ static Result lay_out(const Scene *scene, Meshes *out, size_t *vertex_count, siz
     return RESULT_OK;
 }
 
-/* Positions of all meshes first, then normals. A buffer of no bytes is not allowed: at least one
- * vertex is reserved. */
-static void fill_buffers(const Scene *scene, const Meshes *meshes, size_t vertex_count)
+/* A vertex attribute, one array for all meshes. */
+typedef struct Attribute {
+    GLint components;
+    GLintptr at; /* bytes from the start of the vertex buffer */
+} Attribute;
+
+enum {
+    ATTRIBUTES = 3
+};
+
+/* Positions of all meshes first, then normals, then uvs. */
+static size_t lay_out_attributes(size_t vertex_count, bool textured, Attribute out[ATTRIBUTES])
 {
-    GLintptr vec3 = 3 * sizeof(float);
+    static const GLint components[ATTRIBUTES] = {3, 3, 2};
+    size_t at = 0;
+    for (int i = 0; i < ATTRIBUTES; i++) {
+        out[i] = (Attribute){i < 2 || textured ? components[i] : 0, (GLintptr)at};
+        at += vertex_count * (size_t)out[i].components * sizeof(float);
+    }
+    return at;
+}
+
+/* What a mesh lacks stays as it is: 0. */
+static void fill_buffers(const Scene *scene, const Meshes *meshes,
+                         const Attribute attributes[ATTRIBUTES])
+{
     for (size_t i = 0; i < scene->mesh_count; i++) {
         const Mesh *mesh = &scene->meshes[i];
         const MeshRange *range = &meshes->ranges[i];
-        GLintptr at = range->base_vertex * vec3;
-        if (mesh->vertex_count > 0) {
-            GLsizeiptr bytes = (GLsizeiptr)mesh->vertex_count * vec3;
-            gl.NamedBufferSubData(meshes->vertices, at, bytes, mesh->position);
-            gl.NamedBufferSubData(meshes->vertices, (GLintptr)vertex_count * vec3 + at, bytes,
-                                  mesh->normal);
+        const float *const values[ATTRIBUTES] = {mesh->position, mesh->normal, mesh->uv};
+        for (int k = 0; k < ATTRIBUTES; k++) {
+            GLintptr vertex = attributes[k].components * (GLintptr)sizeof(float);
+            if (vertex > 0 && values[k] && mesh->vertex_count > 0)
+                gl.NamedBufferSubData(meshes->vertices,
+                                      attributes[k].at + range->base_vertex * vertex,
+                                      (GLsizeiptr)mesh->vertex_count * vertex, values[k]);
         }
         if (range->index_count > 0)
             gl.NamedBufferSubData(
@@ -53,25 +75,29 @@ static void fill_buffers(const Scene *scene, const Meshes *meshes, size_t vertex
     }
 }
 
-static void make_vertex_array(Meshes *meshes, size_t vertex_count)
+static void make_vertex_array(Meshes *meshes, const Attribute attributes[ATTRIBUTES])
 {
-    GLsizei stride = 3 * sizeof(float);
     gl.CreateVertexArrays(1, &meshes->vertex_array);
-    for (GLuint i = 0; i < 2; i++) {
-        gl.VertexArrayVertexBuffer(meshes->vertex_array, i, meshes->vertices,
-                                   (GLintptr)(i * vertex_count) * stride, stride);
+    for (GLuint i = 0; i < ATTRIBUTES; i++) {
+        GLint components = attributes[i].components;
+        if (components == 0)
+            continue;
+        gl.VertexArrayVertexBuffer(meshes->vertex_array, i, meshes->vertices, attributes[i].at,
+                                   components * (GLsizei)sizeof(float));
         gl.EnableVertexArrayAttrib(meshes->vertex_array, i);
-        gl.VertexArrayAttribFormat(meshes->vertex_array, i, 3, GL_FLOAT, GL_FALSE, 0);
+        gl.VertexArrayAttribFormat(meshes->vertex_array, i, components, GL_FLOAT, GL_FALSE, 0);
         gl.VertexArrayAttribBinding(meshes->vertex_array, i, i);
     }
     gl.VertexArrayElementBuffer(meshes->vertex_array, meshes->indices);
 }
 
+/* Zeroed. A buffer of no bytes is not allowed. */
 static GLuint make_buffer(size_t bytes)
 {
     GLuint buffer;
     gl.CreateBuffers(1, &buffer);
     gl.NamedBufferStorage(buffer, (GLsizeiptr)(bytes ? bytes : 1), NULL, GL_DYNAMIC_STORAGE_BIT);
+    gl.ClearNamedBufferData(buffer, GL_R8, GL_RED, GL_UNSIGNED_BYTE, NULL);
     return buffer;
 }
 
@@ -84,13 +110,15 @@ Result upload_meshes(Context *context, const Scene *scene, Meshes *out)
     size_t vertex_count, index_count;
     Result result = lay_out(scene, out, &vertex_count, &index_count);
     if (result == RESULT_OK) {
-        size_t vertex_bytes = vertex_count * 6 * sizeof(float);
+        Attribute attributes[ATTRIBUTES];
+        size_t vertex_bytes =
+            lay_out_attributes(vertex_count, scene->texture_count > 0, attributes);
         size_t index_bytes = index_count * sizeof(uint32_t);
         out->bytes = vertex_bytes + index_bytes;
         out->vertices = make_buffer(vertex_bytes);
         out->indices = make_buffer(index_bytes);
-        fill_buffers(scene, out, vertex_count);
-        make_vertex_array(out, vertex_count);
+        fill_buffers(scene, out, attributes);
+        make_vertex_array(out, attributes);
         result = context_check(context, "mesh upload");
     }
     if (result != RESULT_OK)
@@ -141,4 +169,60 @@ void upload_free_lights(LightBuffer *lights)
 {
     gl.DeleteBuffers(1, &lights->buffer);
     *lights = (LightBuffer){0};
+}
+
+static Result check_textures(const Context *context, const Scene *scene, const RenderDesc *desc,
+                             size_t used, size_t *bytes)
+{
+    uint32_t side = (uint32_t)context_limits(context)->texture_size;
+    for (size_t i = 0; i < scene->texture_count; i++) {
+        const Texture *texture = &scene->textures[i];
+        if (texture->width > side || texture->height > side)
+            return result_fail(RESULT_BAD_INPUT,
+                               "texture %zu: %u×%u texels: the OpenGL driver allows %u a side", i,
+                               texture->width, texture->height, side);
+        *bytes += (size_t)texture->width * texture->height * 4 * sizeof(float);
+    }
+    size_t most = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
+    if (*bytes > 0 && (used > most || *bytes > most - used))
+        return result_fail(RESULT_NO_MEMORY,
+                           "gl: buffers and textures need %zu KiB, the limit is %zu KiB "
+                           "(--max-memory)",
+                           (used + *bytes) >> 10, most >> 10);
+    return RESULT_OK;
+}
+
+Result upload_textures(Context *context, const Scene *scene, const RenderDesc *desc, size_t used,
+                       Textures *out)
+{
+    *out = (Textures){0};
+    Result result = check_textures(context, scene, desc, used, &out->bytes);
+    if (result != RESULT_OK || scene->texture_count == 0)
+        return result;
+    out->names = memory_array(scene->texture_count, sizeof *out->names);
+    if (!out->names)
+        return RESULT_NO_MEMORY;
+    out->count = scene->texture_count;
+    gl.CreateTextures(GL_TEXTURE_2D, (GLsizei)out->count, out->names);
+    for (size_t i = 0; i < out->count; i++) {
+        const Texture *texture = &scene->textures[i];
+        GLsizei width = (GLsizei)texture->width, height = (GLsizei)texture->height;
+        gl.TextureStorage2D(out->names[i], 1, GL_RGBA32F, width, height);
+        gl.TextureSubImage2D(out->names[i], 0, 0, 0, width, height, GL_RGBA, GL_FLOAT,
+                             texture->texels);
+        gl.TextureParameteri(out->names[i], GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        gl.TextureParameteri(out->names[i], GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    result = context_check(context, "texture upload");
+    if (result != RESULT_OK)
+        upload_free_textures(out);
+    return result;
+}
+
+void upload_free_textures(Textures *textures)
+{
+    if (textures->names)
+        gl.DeleteTextures((GLsizei)textures->count, textures->names);
+    free(textures->names);
+    *textures = (Textures){0};
 }

@@ -12,7 +12,8 @@ typedef struct MeshRange {
     int32_t base_vertex;
 } MeshRange;
 
-/* All meshes in one vertex array: attribute 0 position, attribute 1 normal, 32-bit indices. */
+/* All meshes in one vertex array: attribute 0 position, 1 normal, and where the scene has textures
+ * 2 uv; 32-bit indices. */
 typedef struct Meshes {
     GLuint vertex_array, vertices, indices;
     MeshRange *ranges; /* one per mesh of the scene */
@@ -33,5 +34,17 @@ typedef struct LightBuffer {
 /* UNSUPPORTED when there are more lights than a storage block of the driver's holds. */
 Result upload_lights(Context *context, const View *view, LightBuffer *out);
 void upload_free_lights(LightBuffer *lights);
+
+/* The scene's textures as RGBA32F, level 0. */
+typedef struct Textures {
+    GLuint *names;
+    size_t count, bytes;
+} Textures;
+
+/* NO_MEMORY when used bytes and the textures need more than desc->max_memory (4 GiB if 0),
+ * BAD_INPUT when a texture is larger than the driver's. */
+Result upload_textures(Context *context, const Scene *scene, const RenderDesc *desc, size_t used,
+                       Textures *out);
+void upload_free_textures(Textures *textures);
 
 #endif

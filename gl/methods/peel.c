@@ -17,7 +17,7 @@
 typedef struct Scratch {
     void *pixels;       /* one buffer for the trace */
     uint32_t *depth[2]; /* this peel's and the previous one's, as bits */
-    void *position;
+    void *material;
 } Scratch;
 
 static Result make_scratch(const Passes *passes, const TraceSink *trace, Scratch *out)
@@ -30,8 +30,8 @@ static Result make_scratch(const Passes *passes, const TraceSink *trace, Scratch
         return RESULT_OK;
     out->depth[0] = memory_array(pixels, sizeof(uint32_t));
     out->depth[1] = memory_array(pixels, sizeof(uint32_t));
-    out->position = memory_array(pixels, 4 * sizeof(float));
-    return out->depth[0] && out->depth[1] && out->position ? RESULT_OK : RESULT_NO_MEMORY;
+    out->material = memory_array(pixels, 4 * sizeof(float));
+    return out->depth[0] && out->depth[1] && out->material ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 static void free_scratch(Scratch *scratch)
@@ -39,27 +39,27 @@ static void free_scratch(Scratch *scratch)
     free(scratch->pixels);
     free(scratch->depth[0]);
     free(scratch->depth[1]);
-    free(scratch->position);
+    free(scratch->material);
 }
 
 /* Compares a peel's depths with the previous peel's: *repeated counts the pixels that have a
  * fragment at the same stored depth, *fresh those that have one at another. A pixel has a fragment
- * where its position's w is not 0; its depth may equal the cleared one. */
+ * where its material's fourth channel is not 0; its depth may equal the cleared one. */
 static void count_repeats(const Passes *passes, int peel, Scratch *scratch, uint64_t *repeated,
                           uint64_t *fresh)
 {
     const Targets *targets = &passes->targets;
     GLuint framebuffer = targets->peel_buffer[peel & 1];
-    PixelFormat format = targets->color_format[GBUFFER_POSITION];
+    PixelFormat format = targets->color_format[GBUFFER_MATERIAL];
     uint32_t *depth = scratch->depth[peel & 1], *previous = scratch->depth[1 - (peel & 1)];
     readback_depth(targets, framebuffer, READBACK_BOTTOM_UP, depth);
-    readback_color(targets, framebuffer, GBUFFER_POSITION, format, READBACK_BOTTOM_UP,
-                   scratch->position);
+    readback_color(targets, framebuffer, targets->attachment[GBUFFER_MATERIAL], format,
+                   READBACK_BOTTOM_UP, scratch->material);
     *repeated = *fresh = 0;
     size_t pixels = (size_t)targets->width * (size_t)targets->height;
     size_t stride = format_pixel_bytes(format);
     for (size_t i = 0; i < pixels; i++) {
-        if (format_channel(format, (const char *)scratch->position + i * stride, 3) == 0.0f)
+        if (format_channel(format, (const char *)scratch->material + i * stride, 3) == 0.0f)
             continue;
         if (peel > 0 && depth[i] == previous[i])
             ++*repeated;
@@ -95,7 +95,7 @@ static Result run_peel(Passes *passes, int peel, TraceSink *trace, Scratch *scra
     }
     *more = true;
     out->peels = peel + 1;
-    passes_peel_lighting(passes);
+    passes_peel_lighting(passes, peel);
     if (!trace)
         return RESULT_OK;
     result = readback_trace_gbuffer(&passes->targets, passes->targets.peel_buffer[peel & 1], peel,

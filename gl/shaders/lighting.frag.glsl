@@ -2,17 +2,27 @@
 // The formula and its order of operations: frame/shading.h.
 //
 // LIGHT_COUNT      number of lights
+// OCTAHEDRAL       normals are stored in two channels
+// RECONSTRUCT      the position follows from the stored depth
 // LIGHTS_STORAGE   they do not fit a uniform block
 // GGX_STABLE       the distribution without cancellation
 // BACK_LIGHT       lights behind the surface add their specular lobe
 // ACCUM_8          the accumulation buffer has 8 bits a channel
 
 layout(binding = 0) uniform sampler2D normal_buffer;
+#ifdef RECONSTRUCT
+layout(binding = 1) uniform sampler2D depth_buffer;
+#else
 layout(binding = 1) uniform sampler2D position_buffer;
+#endif
 layout(binding = 2) uniform sampler2D diffuse_buffer;
 layout(binding = 3) uniform sampler2D material_buffer;
 
 layout(location = 0) uniform vec3 ambient;
+#ifdef RECONSTRUCT
+layout(location = 1) uniform vec3 depth_to_z; // scale and offset to 1/z, least 1/z
+layout(location = 2) uniform vec4 ray;        // scale, offset of x and y
+#endif
 
 layout(location = 0) out vec4 source;
 
@@ -32,14 +42,50 @@ layout(std140, binding = 0) uniform Lights
 };
 #endif
 
+#ifdef OCTAHEDRAL
+vec3 fetch_normal(ivec2 pixel)
+{
+    precise vec2 p = texelFetch(normal_buffer, pixel, 0).xy * 2.0 - 1.0;
+    precise float z = 1.0 - abs(p.x) - abs(p.y);
+    precise vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+    if (z < 0.0)
+        p = folded;
+    precise vec3 v = vec3(p, z);
+    precise float length2 = max(dot(v, v), TINY);
+    precise vec3 normal = v * inversesqrt(length2);
+    return normal;
+}
+#else
+vec3 fetch_normal(ivec2 pixel)
+{
+    return texelFetch(normal_buffer, pixel, 0).xyz;
+}
+#endif
+
+#ifdef RECONSTRUCT
+vec3 fetch_position(ivec2 pixel)
+{
+    float depth = texelFetch(depth_buffer, pixel, 0).r;
+    precise float inverse_z = max(depth * depth_to_z.x + depth_to_z.y, depth_to_z.z);
+    precise float z = 1.0 / inverse_z;
+    precise vec2 position = (vec2(pixel) * ray.xy + ray.zw) * z;
+    return vec3(position, -z);
+}
+#else
+vec3 fetch_position(ivec2 pixel)
+{
+    return texelFetch(position_buffer, pixel, 0).xyz;
+}
+#endif
+
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 diffuse_alpha = texelFetch(diffuse_buffer, pixel, 0);
     if (diffuse_alpha.a <= ALPHA_TEST)
         discard;
-    vec3 N = texelFetch(normal_buffer, pixel, 0).xyz;
-    vec3 P = texelFetch(position_buffer, pixel, 0).xyz;
+    vec3 N = fetch_normal(pixel);
+    vec3 P = fetch_position(pixel);
     vec3 material = texelFetch(material_buffer, pixel, 0).xyz;
     vec3 diffuse = diffuse_alpha.rgb;
     float metallic = material.y;

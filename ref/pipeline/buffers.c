@@ -13,6 +13,9 @@ Result gbuffer_create(const RenderDesc *desc, GBuffer *out)
         {&out->material, layout.material},      {&out->primitive, FORMAT_R32UI},
     };
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
+        images[i].image->format = images[i].format;
+        if (images[i].format == FORMAT_NONE)
+            continue;
         Result result = image_create(desc->width, desc->height, images[i].format, images[i].image);
         if (result != RESULT_OK) {
             gbuffer_free(out);
@@ -35,8 +38,9 @@ void gbuffer_free(GBuffer *buffers)
 
 static void clear_color(Image *image)
 {
-    memset(image->pixels, 0,
-           (size_t)image->width * (size_t)image->height * format_pixel_bytes(image->format));
+    if (image->pixels)
+        memset(image->pixels, 0,
+               (size_t)image->width * (size_t)image->height * format_pixel_bytes(image->format));
 }
 
 void gbuffer_clear(GBuffer *buffers, DepthRange range)

@@ -13,7 +13,8 @@ typedef struct Texel {
     float normal[4], position[4], diffuse[4], material[4];
 } Texel;
 
-/* A full-size G-buffer with its depth; primitive ids beside it are for statistics only. */
+/* A full-size G-buffer with its depth; primitive ids beside it are for statistics only. position
+ * may have FORMAT_NONE and no pixels. */
 typedef struct GBuffer {
     Image depth, normal, position, diffuse, material, primitive;
 } GBuffer;

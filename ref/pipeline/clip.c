@@ -63,6 +63,8 @@ static Vertex cut_edge(const Viewport *viewport, float t, const Vertex *from, co
             op_add(from->position[i], op_mul(t, op_sub(to->position[i], from->position[i])));
         cut.normal[i] = op_add(from->normal[i], op_mul(t, op_sub(to->normal[i], from->normal[i])));
     }
+    for (int i = 0; i < 2; i++)
+        cut.uv[i] = op_add(from->uv[i], op_mul(t, op_sub(to->uv[i], from->uv[i])));
     viewport_transform(viewport, true, &cut);
     return cut;
 }

@@ -4,7 +4,9 @@
 #define PEEL_REF_FRAGMENT_H
 
 #include "frame/shading.h"
+#include "ref/pipeline/encode.h"
 #include "ref/pipeline/pass.h"
+#include "ref/pipeline/texture.h"
 
 /* A smooth varying at a pixel: the plane of attribute/w, times w. */
 static inline float fragment_varying(const Pass *pass, const Setup *setup, const float values[3],
@@ -16,6 +18,62 @@ static inline float fragment_varying(const Pass *pass, const Setup *setup, const
     return op_mul(plane_at(pass->fused, &plane, x, y), inverse_fragment_w);
 }
 
+/* 1 / gl_FragCoord.w. */
+static inline float fragment_inverse_w(const Pass *pass, const Setup *setup, int x, int y)
+{
+    const Vertex *const *v = setup->corner;
+    Plane w = setup_plane(setup, v[0]->window[3], v[1]->window[3], v[2]->window[3]);
+    return op_div(1.0f, plane_at(pass->fused, &w, x, y));
+}
+
+/* Where the material has textures: their samples times base[4], roughness and metallic. */
+static inline void fragment_texture(const Pass *pass, const Setup *setup, const Material *material,
+                                    float inverse_w, int x, int y, float base[4], float surface[2])
+{
+    const Vertex *const *v = setup->corner;
+    const Texture *textures = pass->scene->textures;
+    float uv[2], sample[4];
+    for (int i = 0; i < 2; i++)
+        uv[i] = fragment_varying(pass, setup, (float[3]){v[0]->uv[i], v[1]->uv[i], v[2]->uv[i]},
+                                 inverse_w, x, y);
+    if (material->base_color_texture) {
+        texture_sample(&textures[material->base_color_texture - 1], uv, sample);
+        for (int i = 0; i < 4; i++)
+            base[i] = op_mul(base[i], sample[i]);
+    }
+    if (material->metallic_roughness_texture) {
+        texture_sample(&textures[material->metallic_roughness_texture - 1], uv, sample);
+        surface[0] = op_mul(surface[0], sample[1]);
+        surface[1] = op_mul(surface[1], sample[2]);
+    }
+}
+
+/* What the material and its textures give: base colour and alpha, roughness and metallic. */
+static inline void fragment_material(const Pass *pass, const Setup *setup, const Material *material,
+                                     float inverse_w, int x, int y, float base[4], float surface[2])
+{
+    for (int i = 0; i < 4; i++)
+        base[i] = material->base_color[i];
+    surface[0] = material->roughness;
+    surface[1] = material->metallic;
+    if (material->base_color_texture || material->metallic_roughness_texture)
+        fragment_texture(pass, setup, material, inverse_w, x, y, base, surface);
+}
+
+/* Whether the alpha mask discards the fragment. Flushing mode. */
+static inline bool fragment_masked(const Pass *pass, const Setup *setup, const Primitive *primitive,
+                                   int x, int y)
+{
+    const Draw *draw = &pass->view.draws[primitive->draw];
+    if (!draw->masked)
+        return false;
+    const Material *material = &pass->scene->materials[draw->material];
+    float base[4], surface[2];
+    fragment_material(pass, setup, material, fragment_inverse_w(pass, setup, x, y), x, y, base,
+                      surface);
+    return base[3] < op_flush(material->alpha_cutoff);
+}
+
 /* What it writes to its targets, unquantised. Flushing mode. */
 static inline void fragment_shade(const Pass *pass, const Setup *setup, const Primitive *primitive,
                                   int x, int y, Texel *out)
@@ -23,8 +81,7 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
     const Draw *draw = &pass->view.draws[primitive->draw];
     const Material *material = &pass->scene->materials[draw->material];
     const Vertex *const *v = setup->corner;
-    Plane w = setup_plane(setup, v[0]->window[3], v[1]->window[3], v[2]->window[3]);
-    float inverse_w = op_div(1.0f, plane_at(pass->fused, &w, x, y));
+    float inverse_w = fragment_inverse_w(pass, setup, x, y);
     float normal[3];
     for (int i = 0; i < 3; i++) {
         out->position[i] = fragment_varying(
@@ -41,14 +98,26 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
     for (int i = 0; i < 3; i++) {
         float n = op_mul(normal[i], scale);
         out->normal[i] = turn ? op_neg(n) : n;
-        out->diffuse[i] = material->base_color[i];
     }
     out->normal[3] = 0.0f;
-    out->diffuse[3] = draw->transparent ? material->base_color[3] : 1.0f;
-    out->material[0] = material->roughness;
-    out->material[1] = material->metallic;
+    if (pass->layout.normal == FORMAT_RG16)
+        encode_octahedral(out->normal, out->normal);
+    fragment_material(pass, setup, material, inverse_w, x, y, out->diffuse, out->material);
+    if (!draw->transparent)
+        out->diffuse[3] = 1.0f;
     out->material[2] = material->occlusion;
     out->material[3] = 1.0f;
+}
+
+/* From what the lighting pass fetches at a pixel to what it shades: undoes the encodings, in
+ * place. depth: the stored depth (depth_key). Flushing mode. */
+static inline void fragment_decode(const Pass *pass, uint32_t depth, int x, int y, Texel *texel)
+{
+    if (pass->layout.normal == FORMAT_RG16)
+        decode_octahedral(texel->normal, texel->normal);
+    if (pass->layout.position == FORMAT_NONE)
+        decode_position(&pass->view.unprojection, depth_fetch(pass->depth_format, depth), x, y,
+                        texel->position);
 }
 
 #endif

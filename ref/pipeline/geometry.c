@@ -44,6 +44,8 @@ static void transform_vertices(const Build *build, const Draw *draw, size_t firs
         for (int r = 0; r < 3; r++)
             vertex->normal[r] =
                 op_add(op_add(op_mul(m[r], n[0]), op_mul(m[3 + r], n[1])), op_mul(m[6 + r], n[2]));
+        for (int k = 0; k < 2; k++)
+            vertex->uv[k] = mesh->uv ? mesh->uv[2 * (size_t)i + (size_t)k] : 0.0f;
         viewport_transform(&build->viewport, false, vertex);
     }
 }

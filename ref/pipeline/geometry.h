@@ -17,6 +17,7 @@ typedef struct Vertex {
     int32_t x_fixed8, y_fixed8; /* window x − 0.5 and y − 0.5, in 1/256 pixel */
     float position[3];          /* smooth varyings, view space */
     float normal[3];
+    float uv[2]; /* 0 where the mesh has none */
 } Vertex;
 
 typedef struct Primitive {

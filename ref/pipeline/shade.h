@@ -14,8 +14,8 @@ typedef struct ShadeForm {
     bool back_light;
 } ShadeForm;
 
-/* From fetched G-buffer values to the premultiplied source colour; false where the alpha test
- * discards. Flushing mode. */
+/* From fetched and decoded G-buffer values to the premultiplied source colour; false where the
+ * alpha test discards. Flushing mode. */
 bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
 
 /* Resolve: final colour over the background from an accumulated pixel whose transmittance to the

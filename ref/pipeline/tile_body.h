@@ -58,10 +58,8 @@ static int local_index(const TilePass *tile, int x, int y)
     return (y - tile->rect.y0) * TILE + (x - tile->rect.x0);
 }
 
-static inline void keep_nearest(TilePass *tile, int pixel, FragmentDepth depth)
+static inline void keep(TilePass *tile, int pixel, FragmentDepth depth)
 {
-    if (!pass_depth_test(tile->pass, depth.key, tile->key[pixel]))
-        return;
     tile->key[pixel] = depth.key;
     tile->index[pixel] = tile->primitive;
 }
@@ -72,7 +70,9 @@ static void visit_opaque(void *context, const Setup *setup, int x, int y)
     const Pass *pass = tile->pass;
     int pixel = local_index(tile, x, y);
     FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
-    keep_nearest(tile, pixel, depth);
+    if (pass_depth_test(pass, depth.key, tile->key[pixel]) &&
+        !fragment_masked(pass, setup, &pass->geometry.opaque.items[tile->primitive], x, y))
+        keep(tile, pixel, depth);
 }
 
 static void visit_transparent(void *context, const Setup *setup, int x, int y)
@@ -87,7 +87,8 @@ static void visit_transparent(void *context, const Setup *setup, int x, int y)
         tile->scratch->fragments[pixel]++;
     else if (pass_peeled(pass, depth, tile->previous[pixel]))
         return;
-    keep_nearest(tile, pixel, depth);
+    if (pass_depth_test(pass, depth.key, tile->key[pixel]))
+        keep(tile, pixel, depth);
 }
 
 static void visit_remaining(void *context, const Setup *setup, int x, int y)
@@ -179,8 +180,8 @@ static inline void gather(Gathered *gathered, int pixel, const Texel *texel)
         light_batch(gathered);
 }
 
-/* Lights the winners in tile->index, which are of the transparent list or of the opaque one, and
- * blends them. */
+/* Lights the winners in tile->index, at the depths in tile->key, which are of the transparent list
+ * or of the opaque one, and blends them. */
 static void light(const TilePass *tile, bool transparent)
 {
     const Pass *pass = tile->pass;
@@ -205,6 +206,7 @@ static void light(const TilePass *tile, bool transparent)
             Texel texel;
             fragment_shade(pass, &setup, &list->items[index], x, y, &texel);
             texel_quantise(&pass->layout, &texel);
+            fragment_decode(pass, tile->key[pixel], x, y, &texel);
             if (texel.diffuse[3] > SHADING_ALPHA_TEST)
                 gather(&gathered, pixel, &texel);
         }
@@ -309,6 +311,7 @@ static __attribute__((noinline)) void render_tile(const TileJob *job, uint32_t n
     if (job->dry)
         return;
     count_tile(job, &tile, number, job->peels[number], counts);
+    tile.key = scratch->opaque_key;
     tile.index = scratch->opaque_index;
     light(&tile, false);
     resolve_tile(job, &tile);

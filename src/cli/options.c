@@ -108,6 +108,7 @@ RenderOptions options_default(void)
         .depth_func = -1,
         .peel_test = -1,
         .gbuffer = -1,
+        .position = -1,
         .depth = -1,
         .accum = -1,
     };
@@ -176,15 +177,27 @@ Result options_load_scene(RenderOptions *options, Scene *out)
         options->desc.peel_test = (PeelTest)options->peel_test;
     if (options->gbuffer >= 0)
         options->desc.gbuffer = (GBufferFormat)options->gbuffer;
+    if (options->position >= 0)
+        options->desc.position = (PositionSource)options->position;
+    if (options->desc.gbuffer == GBUFFER_COMPACT && options->position == POSITION_BUFFER)
+        result = result_fail(RESULT_BAD_INPUT, "--position buffer: a compact G-buffer stores no "
+                                               "positions, expected reconstruct");
     if (options->depth >= 0)
         options->desc.depth = (PixelFormat)options->depth;
     if (options->accum >= 0)
         options->desc.accum = (PixelFormat)options->accum;
     options->desc.unfused = options->fma == FMA_OFF;
+    options_apply_fma(options->fma);
+    if (result != RESULT_OK)
+        scene_free(out);
+    return result;
+}
+
+void options_apply_fma(FmaChoice fma)
+{
     /* Mesa reads it at its first call, once per process: hides FMA (and AVX) from its compiler. */
-    if (options->fma == FMA_OFF)
+    if (fma == FMA_OFF)
         setenv("GALLIUM_OVERRIDE_CPU_CAPS", "sse4.1", 1);
-    return RESULT_OK;
 }
 
 Result options_check_fma(const RenderOptions *options)

@@ -28,7 +28,7 @@ typedef struct RenderOptions {
     double opacity, background[3];
     FmaChoice fma;
     /* −1: as the profile has it; else the value in RenderDesc. */
-    int cull, normals, ggx, back_light, depth_func, peel_test, gbuffer, depth, accum;
+    int cull, normals, ggx, back_light, depth_func, peel_test, gbuffer, position, depth, accum;
 } RenderOptions;
 
 /* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */
@@ -50,6 +50,16 @@ error_t options_error(const char *format, ...) __attribute__((format(printf, 1, 
 /* The whole of text as a number in [low, high]; false otherwise. */
 bool options_integer(const char *text, long long low, long long high, long long *out);
 bool options_real(const char *text, double low, double high, double *out);
+
+/* Values of options that several commands have; 0, or the error of options_error. --gl chooses for
+ * the process. */
+#define OPTIONS_GL_HELP "Where OpenGL comes from: osmesa (default) or egl"
+error_t options_gl(const char *text);
+error_t options_fma(const char *text, FmaChoice *out);
+error_t options_count(const char *name, const char *text, int low, int high, int *out);
+
+/* Tells Mesa's software driver not to fuse, for off. Before the first GL context. */
+void options_apply_fma(FmaChoice fma);
 
 /* Loads the scene (a file, or a built-in scene by name) and applies camera, opacity, background
  * and arithmetic mode to it and options->desc. The caller frees the scene. */

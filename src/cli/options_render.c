@@ -2,6 +2,7 @@
 #include "cli/options.h"
 
 #include "frame/method.h"
+#include "gl/context.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -48,7 +49,7 @@ static error_t parse_memory(const char *text, RenderDesc *desc)
     return 0;
 }
 
-static error_t parse_count(const char *name, const char *text, int low, int high, int *out)
+error_t options_count(const char *name, const char *text, int low, int high, int *out)
 {
     long long value;
     if (!options_integer(text, low, high, &value))
@@ -86,7 +87,9 @@ enum {
     KEY_DEPTH,
     KEY_ACCUM,
     KEY_GBUFFER,
+    KEY_POSITION,
     KEY_FMA,
+    KEY_GL,
     KEY_SIMD,
     KEY_THREADS,
     KEY_MEMORY,
@@ -128,11 +131,19 @@ static const struct argp_option render_options[] = {
     {"depth", KEY_DEPTH, "FORMAT", 0, "d32f (default), d24 or d16", 1},
     {"accum", KEY_ACCUM, "FORMAT", 0, "rgba32f (default), rgba16f, rgba16 or rgba8", 1},
     {"gbuffer", KEY_GBUFFER, "SET", 0,
-     "full (default: all 32-bit floats) or seed (the original's formats)", 1},
+     "full (default: all 32-bit floats), seed (the original's formats) or compact (octahedral "
+     "normals, 8-bit material, no position)",
+     1},
+    {"position", KEY_POSITION, "SOURCE", 0,
+     "Positions for lighting: from the G-buffer's buffer (default) or reconstruct (from depth; "
+     "with "
+     "a compact G-buffer always)",
+     1},
     {"fma", KEY_FMA, "on|off", 0,
      "Fused multiply-add in fixed-function arithmetic (default: as the GL driver does; without gl, "
      "on)",
      1},
+    {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 1},
     {"simd", KEY_SIMD, "NAME", 0,
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
     {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
@@ -175,6 +186,25 @@ static error_t parse_choice(const char *option, const char *text, const char *co
     return options_error("%s %s: expected %s", option, text, expected);
 }
 
+error_t options_fma(const char *text, FmaChoice *out)
+{
+    static const char *const names[] = {"on", "off"};
+    int choice = 0;
+    error_t error = parse_choice("--fma", text, names, 2, &choice);
+    *out = choice == 0 ? FMA_ON : FMA_OFF;
+    return error;
+}
+
+error_t options_gl(const char *text)
+{
+    static const char *const names[] = {"osmesa", "egl"};
+    int choice = 0;
+    error_t error = parse_choice("--gl", text, names, 2, &choice);
+    if (error == 0)
+        context_choose(choice == 0 ? CONTEXT_OSMESA : CONTEXT_EGL);
+    return error;
+}
+
 static error_t parse_method(const char *text, RenderDesc *desc)
 {
     const MethodInfo *method = method_find(text);
@@ -190,7 +220,7 @@ static error_t parse_method(const char *text, RenderDesc *desc)
 
 static error_t parse_lights(const char *text, RenderDesc *desc)
 {
-    error_t error = parse_count("--lights", text, 0, 1 << 20, &desc->lights);
+    error_t error = options_count("--lights", text, 0, 1 << 20, &desc->lights);
     if (desc->lights == 0)
         desc->lights = -1; /* none: 0 means all in a RenderDesc */
     return error;
@@ -207,7 +237,8 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     static const char *const functions[] = {"less", "lequal"};
     static const char *const ranges[] = {"gl", "zero-one", "reversed"};
     static const char *const tests[] = {"stored", "raw"};
-    static const char *const gbuffers[] = {"full", "seed"};
+    static const char *const gbuffers[] = {"full", "seed", "compact"};
+    static const char *const positions[] = {"buffer", "reconstruct"};
     static const PixelFormat depth_formats[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
     static const char *const depths[] = {"d32f", "d24", "d16"};
     static const PixelFormat accum_formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
@@ -224,9 +255,9 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
         options->seed_profile = choice == 1;
         break;
     case KEY_FMA:
-        error = parse_choice("--fma", argument, switches, 2, &choice);
-        options->fma = choice == 0 ? FMA_ON : FMA_OFF;
-        break;
+        return options_fma(argument, &options->fma);
+    case KEY_GL:
+        return options_gl(argument);
     case KEY_CULL:
         error = parse_choice("--cull", argument, culls, 3, &choice);
         options->cull = choice;
@@ -256,8 +287,12 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
         options->peel_test = choice;
         break;
     case KEY_GBUFFER:
-        error = parse_choice("--gbuffer", argument, gbuffers, 2, &choice);
+        error = parse_choice("--gbuffer", argument, gbuffers, 3, &choice);
         options->gbuffer = choice;
+        break;
+    case KEY_POSITION:
+        error = parse_choice("--position", argument, positions, 2, &choice);
+        options->position = choice;
         break;
     case KEY_DEPTH:
         error = parse_choice("--depth", argument, depths, 3, &choice);
@@ -301,7 +336,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
     case KEY_PASSES:
         return parse_passes(argument, desc);
     case KEY_THREADS:
-        return parse_count("--threads", argument, 1, 256, &desc->threads);
+        return options_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:
         return parse_memory(argument, desc);
     case ARGP_KEY_ARG:

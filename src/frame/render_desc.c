@@ -32,6 +32,12 @@ const char *simd_name(SimdChoice simd)
     return names[simd];
 }
 
+const char *gbuffer_name(GBufferFormat format)
+{
+    static const char *const names[] = {"full", "seed", "compact"};
+    return names[format];
+}
+
 GBufferLayout render_desc_layout(const RenderDesc *desc)
 {
     static const GBufferLayout layouts[] = {

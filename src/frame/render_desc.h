@@ -126,6 +126,8 @@ typedef struct GBufferLayout {
     PixelFormat normal, position, diffuse, material;
 } GBufferLayout;
 
+const char *gbuffer_name(GBufferFormat format); /* "full", "seed", "compact"; static */
+
 GBufferLayout render_desc_layout(const RenderDesc *desc);
 
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The original leaves out entities that cannot be seen at all; a masked material without texture
- * is all there or not there at all. */
+/* The original leaves out entities that cannot be seen at all. A texture only lowers alpha; without
+ * one a masked material is all there or not there at all. */
 static bool is_visible(const Material *material)
 {
     float alpha = material->base_color[3];
@@ -46,6 +46,7 @@ static Draw make_draw(const Scene *scene, uint32_t index, const Matrix *view, Cu
     Draw draw = {.instance = index, .mesh = instance->mesh, .material = instance->material};
     draw.transparent = material->alpha_mode == ALPHA_BLEND;
     draw.flipped = matrix_determinant3(&model_view) < 0.0;
+    draw.masked = material->alpha_mode == ALPHA_MASK && material->base_color_texture > 0;
     draw.cull_back = culls_back(cull, material, draw.transparent);
     matrix_round(&model_view, draw.model_view);
     /* Normals are normalised after the product, so a power of two changes no bit of them; it keeps

@@ -15,6 +15,7 @@ typedef struct Draw {
     bool transparent;         /* alpha mode BLEND */
     bool flipped;             /* the matrix mirrors: front and back change places */
     bool cull_back;           /* back faces are discarded */
+    bool masked;              /* fragments are discarded by the alpha of a texture */
     float model_view[16];     /* column-major; last row 0 0 0 1 */
     float normal_matrix[9];   /* column-major inverse transpose of model_view's 3×3, by a power of
                                * two:   largest element in [0.5, 1) */

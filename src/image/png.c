@@ -50,14 +50,36 @@ static unsigned char *drop_alpha(const Image *image)
     return rgb;
 }
 
-Result png_write(const Image *image, const char *path)
+static Result check(const Image *image, const char *label, int channels)
 {
     if (image->format != FORMAT_RGBA8 || !image->pixels || image->width < 1 || image->height < 1)
-        return result_fail(RESULT_INTERNAL, "%s: expected an rgba8 image with pixels", path);
+        return result_fail(RESULT_INTERNAL, "%s: expected an rgba8 image with pixels", label);
     /* stb counts bytes in int. */
-    if ((int64_t)image->width * image->height > (INT_MAX / 2 - image->height) / 3)
+    if ((int64_t)image->width * image->height > (INT_MAX / 2 - image->height) / channels)
         return result_fail(RESULT_UNSUPPORTED, "%s: %dx%d pixels are too many for a PNG file here",
-                           path, image->width, image->height);
+                           label, image->width, image->height);
+    return RESULT_OK;
+}
+
+Result png_encode(const Image *image, const char *label, unsigned char **bytes, size_t *count)
+{
+    int size = 0;
+    Result result = check(image, label, 4);
+    if (result)
+        return result;
+    *bytes = stbi_write_png_to_mem(image->pixels, image->width * 4, image->width, image->height, 4,
+                                   &size);
+    if (!*bytes)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", label);
+    *count = (size_t)size;
+    return RESULT_OK;
+}
+
+Result png_write(const Image *image, const char *path)
+{
+    Result checked = check(image, path, 3);
+    if (checked)
+        return checked;
     unsigned char *rgb = drop_alpha(image);
     if (!rgb)
         return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);

@@ -4,7 +4,7 @@
 
 #include <assert.h>
 
-static const FormatInfo infos[FORMAT_COUNT] = {
+static const FormatInfo infos[FORMAT_COUNT + 1] = {
     [FORMAT_RGBA32F] = {"rgba32f", KIND_FLOAT, 4, 4, 0},
     [FORMAT_RGBA16F] = {"rgba16f", KIND_HALF, 4, 2, 0},
     [FORMAT_RGBA16] = {"rgba16", KIND_UNORM, 4, 2, 65535},
@@ -113,6 +113,11 @@ float unorm8_to_float(uint8_t i)
 uint16_t unorm16_from_float(float x)
 {
     return (uint16_t)op_round_to_int(op_mul(op_saturate(x), 65535.0f));
+}
+
+uint16_t unorm16_from_clear(float x)
+{
+    return (uint16_t)op_add(op_mul(op_saturate(x), 65535.0f), 0.5f);
 }
 
 float unorm16_to_float(uint16_t i)

@@ -18,8 +18,8 @@ typedef enum PixelFormat {
     FORMAT_D24,    /* window depth as a 24-bit unorm in a uint32_t */
     FORMAT_D16,    /* as a 16-bit unorm, in a uint32_t too */
     FORMAT_R32UI,  /* an index; UINT32_MAX is none */
-    FORMAT_NONE,   /* of a buffer that is not stored: no bytes */
-    FORMAT_COUNT
+    FORMAT_COUNT,
+    FORMAT_NONE = FORMAT_COUNT /* of a buffer that is not stored: no bytes */
 } PixelFormat;
 
 typedef enum FormatKind {
@@ -58,6 +58,8 @@ uint8_t unorm8_from_float(float x);
 float unorm8_to_float(uint8_t i);
 
 uint16_t unorm16_from_float(float x);
+/* A cleared RGBA16 or RG16: ties of the product are rounded up, not to even. */
+uint16_t unorm16_from_clear(float x);
 float unorm16_to_float(uint16_t i);
 
 /* Half: truncated toward zero, finite overflow to 65504 (0x7bff), infinity kept, denormals made;

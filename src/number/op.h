@@ -226,6 +226,17 @@ static inline float op_saturate(float x)
     return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
 }
 
+/* From 2^23 on a float is whole; NaN is kept. */
+static inline float op_floor(float x)
+{
+    x = op_flush(x);
+    if (!(op_abs(x) < 0x1p23f))
+        return x;
+    float truncated = (float)(int32_t)x;
+    float low = truncated > x ? truncated - 1.0f : truncated;
+    return op_from_bits(op_bits(low) | (op_bits(x) & 0x80000000u)); /* −0 stays −0 */
+}
+
 static inline float op_inversesqrt(float x)
 {
     return op_div(1.0f, op_sqrt(x));

@@ -144,7 +144,8 @@ int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS
     SETTING("Depth", "%s, %s", format_info(render_desc_depth(desc))->name,
             desc->depth_func == DEPTH_LEQUAL ? "lequal" : "less");
     SETTING("Accumulation", "%s", format_info(desc->accum)->name);
-    SETTING("G-buffer", "%s", desc->gbuffer == GBUFFER_SEED ? "seed" : "full");
+    SETTING("G-buffer", "%s, position %s", gbuffer_name(desc->gbuffer),
+            render_desc_layout(desc).position == FORMAT_NONE ? "from depth" : "stored");
     SETTING("Peel test", "%s", desc->peel_test == PEEL_TEST_RAW ? "raw" : "stored");
     SETTING("Culling", "%s", culls[desc->cull]);
     SETTING("Normals", "%s", desc->normals == NORMALS_KEPT ? "kept" : "faced");

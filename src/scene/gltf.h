@@ -11,6 +11,12 @@
  * scene without cameras gets a framing camera, one without point lights the default lights. What
  * the file has and Peel does not model is named in one warning.
  *
+ * Textures of base colour and of metallic and roughness, PNG or JPEG, are decoded to linear texels
+ * (scene/texture.h): one for every image, sampler and encoding that drawn materials use, at most
+ * 2^28 texels in all. Mesh.uv is the set that the base-colour texture names (without one, the
+ * metallic-roughness texture; without textures, TEXCOORD_0), floats with the file's bits. A
+ * metallic-roughness texture on another set is left out.
+ *
  * Beyond glTF, extras of nodes:
  *   "attenuation": [c, l, q]        on a light's node; without it (0, 0, 1), as the extension says
  *   "ambient": [r, g, b]            on any node; 0.25 without
@@ -24,9 +30,11 @@ Result gltf_load(const char *path, Scene *out);
 
 /* Writes .gltf (buffers embedded) or .glb by the extension, to a temporary name, then renames. All
  * numbers keep their bits; loading gives the same floats, and matrices rounded to float. The extras
- * above are written. Dropped: occlusion other than 1 (with a warning), meshes without an instance,
- * the cutoff of materials that are not MASK. BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED (2 GiB of
- * geometry or more). */
+ * above are written. Textures are embedded as PNG of 8 bits: texels that come from 8 bits keep
+ * their bits, others are rounded with a warning. Dropped: occlusion other than 1 (with a warning),
+ * meshes without an instance, textures without a material, the cutoff of materials that are not
+ * MASK. BAD_INPUT, IO, NO_MEMORY or UNSUPPORTED (2 GiB of geometry and images, 2^28 texels in one
+ * texture, or more). */
 Result gltf_write(const Scene *scene, const char *path);
 
 #endif

@@ -1,24 +1,17 @@
 #include "scene/gltf_check.h"
 
 #include "scene/gltf_file.h"
+#include "scene/gltf_surface.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-enum {
-    TYPE_INT8 = 5120,
-    TYPE_UINT8,
-    TYPE_INT16,
-    TYPE_UINT16,
-    TYPE_UINT32 = 5125,
-    TYPE_FLOAT
-};
-
 static Result check_arrays(const GltfCheck *check)
 {
-    static const char *const keys[] = {"buffers", "bufferViews", "accessors", "meshes",    "nodes",
-                                       "scenes",  "materials",   "cameras",   "animations"};
+    static const char *const keys[] = {"buffers",    "bufferViews", "accessors", "meshes",
+                                       "nodes",      "scenes",      "materials", "cameras",
+                                       "animations", "textures",    "samplers",  "images"};
     for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
         const json_t *array = gltf_array(check, keys[k]), *element;
         size_t i;
@@ -116,12 +109,6 @@ static Result check_views(const GltfCheck *check)
     return RESULT_OK;
 }
 
-static size_t component_bytes(size_t type)
-{
-    static const unsigned char sizes[] = {1, 1, 2, 2, 0, 4, 4};
-    return type >= TYPE_INT8 && type <= TYPE_FLOAT ? sizes[type - TYPE_INT8] : 0;
-}
-
 /* Components of an accessor that geometry may use; 0 for the others. */
 static size_t component_count(const json_t *accessor)
 {
@@ -137,7 +124,8 @@ static size_t component_count(const json_t *accessor)
 static Result check_accessor(const GltfCheck *check, size_t index, size_t components)
 {
     const json_t *accessor = gltf_json_element(check->json, "accessors", index);
-    size_t bytes = component_bytes(gltf_json_index(accessor, "componentType", 0)) * components;
+    size_t bytes =
+        gltf_json_component_bytes(gltf_json_index(accessor, "componentType", 0)) * components;
     size_t count = gltf_json_index(accessor, "count", 0);
     if (!bytes || component_count(accessor) != components)
         return gltf_fail(check, "accessor", index, "the type that its use asks for");
@@ -162,11 +150,21 @@ static Result check_accessor(const GltfCheck *check, size_t index, size_t compon
 
 /* ---- meshes --------------------------------------------------------------------------------- */
 
-/* A vertex attribute of floats with as many elements as POSITION; absent is fine. */
+/* What the components of an attribute may be: floats, or for texture coordinates also normalised
+ * unsigned integers. */
+static bool attribute_type(const json_t *accessor, bool integers)
+{
+    size_t type = gltf_json_index(accessor, "componentType", 0);
+    return type == TYPE_FLOAT || (integers && (type == TYPE_UINT8 || type == TYPE_UINT16) &&
+                                  json_is_true(json_object_get(accessor, "normalized")));
+}
+
+/* A vertex attribute with as many elements as POSITION; absent is fine. */
 static Result check_attribute(const GltfCheck *check, size_t mesh, const json_t *attributes,
                               const char *name, size_t components)
 {
     const json_t *value = json_object_get(attributes, name);
+    bool integers = strncmp(name, "TEXCOORD_", 9) == 0;
     if (!value)
         return RESULT_OK;
     if (!gltf_valid_index(value, gltf_count(check, "accessors")))
@@ -178,25 +176,17 @@ static Result check_attribute(const GltfCheck *check, size_t mesh, const json_t 
     const json_t *accessor = gltf_json_element(check->json, "accessors", index);
     const json_t *position =
         gltf_json_element(check->json, "accessors", gltf_json_index(attributes, "POSITION", 0));
-    if (gltf_json_index(accessor, "componentType", 0) != TYPE_FLOAT)
-        return gltf_fail(check, "accessor", index, "floats for a vertex attribute");
+    if (!attribute_type(accessor, integers))
+        return gltf_fail(check, "accessor", index,
+                         integers
+                             ? "floats or normalized unsigned bytes or shorts for its attribute"
+                             : "floats for a vertex attribute");
     if (gltf_json_index(accessor, "count", 0) != gltf_json_index(position, "count", 1))
         return gltf_fail(check, "mesh", mesh, "the same count for all attributes");
     return RESULT_OK;
 }
 
-/* Texture coordinates may also be integers; those are dropped, not refused. */
-static void drop_integer_uvs(const GltfCheck *check, json_t *attributes)
-{
-    const json_t *accessor = gltf_json_element(check->json, "accessors",
-                                               gltf_json_index(attributes, "TEXCOORD_0", SIZE_MAX));
-    if (accessor && gltf_json_index(accessor, "componentType", 0) != TYPE_FLOAT) {
-        gltf_note(check, NOTE_UVS);
-        json_object_del(attributes, "TEXCOORD_0");
-    }
-}
-
-static void note_attributes(const GltfCheck *check, const json_t *attributes)
+static void note_colors(const GltfCheck *check, const json_t *attributes)
 {
     const char *key;
     json_t *value;
@@ -204,8 +194,6 @@ static void note_attributes(const GltfCheck *check, const json_t *attributes)
     {
         if (strncmp(key, "COLOR_", 6) == 0)
             gltf_note(check, NOTE_COLORS);
-        if (strncmp(key, "TEXCOORD_", 9) == 0 && strcmp(key, "TEXCOORD_0") != 0)
-            gltf_note(check, NOTE_UVS);
     }
 }
 
@@ -235,7 +223,7 @@ static Result check_indices(const GltfCheck *check, size_t mesh, const json_t *p
 
 static Result check_primitive(const GltfCheck *check, size_t mesh, const json_t *primitive)
 {
-    json_t *attributes = json_object_get(primitive, "attributes");
+    const json_t *attributes = json_object_get(primitive, "attributes");
     if (!json_is_object(primitive) || !json_is_object(attributes) ||
         !gltf_valid_index(json_object_get(primitive, "mode"), MODE_FAN + 1))
         return gltf_fail(check, "mesh", mesh, "primitives with attributes and a mode up to 6");
@@ -247,15 +235,16 @@ static Result check_primitive(const GltfCheck *check, size_t mesh, const json_t 
         return gltf_fail(check, "mesh", mesh, "a POSITION in every primitive");
     if (!gltf_valid_index(json_object_get(primitive, "material"), gltf_count(check, "materials")))
         return gltf_fail(check, "mesh", mesh, "materials that exist");
-    note_attributes(check, attributes);
-    drop_integer_uvs(check, attributes);
+    char uv[UV_NAME_SIZE];
+    gltf_surface_uv_name(check->json, primitive, uv);
+    note_colors(check, attributes);
     if (json_object_get(primitive, "targets"))
         gltf_note(check, NOTE_MORPHS);
     Result result = check_attribute(check, mesh, attributes, "POSITION", 3);
     if (!result)
         result = check_attribute(check, mesh, attributes, "NORMAL", 3);
     if (!result)
-        result = check_attribute(check, mesh, attributes, "TEXCOORD_0", 2);
+        result = check_attribute(check, mesh, attributes, uv, 2);
     return result ? result : check_indices(check, mesh, primitive);
 }
 
@@ -278,42 +267,8 @@ static Result check_meshes(const GltfCheck *check)
     return RESULT_OK;
 }
 
-/* ---- materials ------------------------------------------------------------------------------ */
-
-static bool positive(const json_t *numbers)
-{
-    const json_t *number;
-    size_t i;
-    json_array_foreach(numbers, i, number)
-    {
-        if (json_number_value(number) > 0.0)
-            return true;
-    }
-    return false;
-}
-
-static Result check_materials(const GltfCheck *check)
-{
-    const json_t *material;
-    size_t i;
-    json_array_foreach(gltf_array(check, "materials"), i, material)
-    {
-        const json_t *factors = json_object_get(material, "pbrMetallicRoughness");
-        if (!gltf_valid_numbers(json_object_get(factors, "baseColorFactor"), 4))
-            return gltf_fail(check, "material", i, "four numbers as its baseColorFactor");
-        if (json_object_get(material, "normalTexture") ||
-            json_object_get(material, "occlusionTexture") ||
-            json_object_get(material, "emissiveTexture") ||
-            json_object_get(factors, "baseColorTexture") ||
-            json_object_get(factors, "metallicRoughnessTexture"))
-            gltf_note(check, NOTE_TEXTURES);
-        if (positive(json_object_get(material, "emissiveFactor")))
-            gltf_note(check, NOTE_EMISSIVE);
-    }
-    return RESULT_OK;
-}
-
-/* ---- shared with gltf_graph ----------------------------------------------------------------- */
+/* ---- shared with the other checks
+ * ----------------------------------------------------------------- */
 
 Result gltf_fail(const GltfCheck *check, const char *what, size_t index, const char *expected)
 {
@@ -373,6 +328,6 @@ Result gltf_check(const char *path, GltfJson *json)
     if (!result)
         result = check_views(&check);
     if (!result)
-        result = check_meshes(&check);
-    return result ? result : check_materials(&check);
+        result = gltf_surface_check(&check);
+    return result ? result : check_meshes(&check);
 }

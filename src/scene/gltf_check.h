@@ -1,5 +1,5 @@
-/* The checks of buffers, accessors, meshes and materials, and what all checks are made with. The
- * first breach is the message. */
+/* The checks of buffers, accessors and meshes, and what all checks are made with. The first breach
+ * is the message. */
 #ifndef PEEL_SCENE_GLTF_CHECK_H
 #define PEEL_SCENE_GLTF_CHECK_H
 

@@ -121,15 +121,14 @@ Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t 
     return RESULT_OK;
 }
 
-char *gltf_file_data_uri(const unsigned char *bytes, size_t count)
+char *gltf_file_data_uri(const char *type, const unsigned char *bytes, size_t count)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    static const char prefix[] = "data:application/octet-stream;base64,";
-    char *uri = memory_array(sizeof prefix + (count + 2) / 3 * 4, 1);
+    size_t room = sizeof "data:;base64," + strlen(type) + (count + 2) / 3 * 4;
+    char *uri = memory_array(room, 1);
     if (!uri)
         return NULL;
-    memcpy(uri, prefix, sizeof prefix);
-    char *out = uri + sizeof prefix - 1;
+    char *out = uri + snprintf(uri, room, "data:%s;base64,", type);
     for (size_t i = 0; i < count; i += 3) {
         uint32_t group = (uint32_t)bytes[i] << 16;
         group |= i + 1 < count ? (uint32_t)bytes[i + 1] << 8 : 0;
@@ -140,4 +139,46 @@ char *gltf_file_data_uri(const unsigned char *bytes, size_t count)
         *out++ = i + 2 < count ? digits[group & 63] : '=';
     }
     return uri;
+}
+
+static int base64_value(char c)
+{
+    if (c >= 'A' && c <= 'Z')
+        return c - 'A';
+    if (c >= 'a' && c <= 'z')
+        return c - 'a' + 26;
+    if (c >= '0' && c <= '9')
+        return c - '0' + 52;
+    return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
+Result gltf_file_from_data_uri(const char *uri, unsigned char **bytes, size_t *count)
+{
+    static const char mark[] = ";base64";
+    const char *comma = strchr(uri, ',');
+    size_t head = comma ? (size_t)(comma - uri) : 0;
+    if (head < sizeof mark - 1 || strncmp(comma - (sizeof mark - 1), mark, sizeof mark - 1) != 0)
+        return result_fail(RESULT_BAD_INPUT, "expected ;base64 in its data uri");
+    const char *text = comma + 1;
+    size_t length = strlen(text);
+    if (length && length % 4 == 0) /* the padding: one or two = */
+        for (int i = 0; i < 2 && text[length - 1] == '='; i++)
+            length--;
+    unsigned char *out = memory_array(length / 4 * 3 + 3, 1);
+    if (!out)
+        return RESULT_NO_MEMORY;
+    uint32_t bits = 0;
+    *count = 0;
+    for (size_t i = 0; i < length; i++) {
+        int value = base64_value(text[i]);
+        if (value < 0 || length % 4 == 1) {
+            free(out);
+            return result_fail(RESULT_BAD_INPUT, "expected base64 digits in its data uri");
+        }
+        bits = bits << 6 | (uint32_t)value;
+        if (i % 4 != 0)
+            out[(*count)++] = (unsigned char)(bits >> (6 - 2 * (i % 4)));
+    }
+    *bytes = out;
+    return RESULT_OK;
 }

@@ -21,8 +21,12 @@ int gltf_file_kind(const char *path);
 Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t binary_count,
                           unsigned char **out, size_t *out_count);
 
-/* "data:application/octet-stream;base64," and the bytes (RFC 4648); the caller frees it. NULL
- * without memory. */
-char *gltf_file_data_uri(const unsigned char *bytes, size_t count);
+/* The bytes of a "data:" uri in base64 (RFC 2397, RFC 4648; padding may be missing). The caller
+ * frees *bytes. BAD_INPUT with a message that names neither file nor place, NO_MEMORY. */
+Result gltf_file_from_data_uri(const char *uri, unsigned char **bytes, size_t *count);
+
+/* "data:TYPE;base64," and the bytes (RFC 4648), type being a media type such as "image/png"; the
+ * caller frees it. NULL without memory. */
+char *gltf_file_data_uri(const char *type, const unsigned char *bytes, size_t count);
 
 #endif

@@ -24,6 +24,12 @@ size_t gltf_json_index(const json_t *object, const char *key, size_t fallback)
     return json_is_integer(value) ? (size_t)json_integer_value(value) : fallback;
 }
 
+size_t gltf_json_component_bytes(size_t type)
+{
+    static const unsigned char sizes[] = {1, 1, 2, 2, 0, 4, 4};
+    return type >= TYPE_INT8 && type <= TYPE_FLOAT ? sizes[type - TYPE_INT8] : 0;
+}
+
 bool gltf_json_drawn(const json_t *primitive)
 {
     size_t mode = gltf_json_index(primitive, "mode", MODE_TRIANGLES);
@@ -48,7 +54,7 @@ static json_t *reduced_mesh(const json_t *mesh)
 {
     static const char *const mesh_keys[] = {"name", NULL};
     static const char *const keys[] = {"indices", "material", "mode", NULL};
-    static const char *const attribute_keys[] = {"POSITION", "NORMAL", "TEXCOORD_0", NULL};
+    static const char *const attribute_keys[] = {"POSITION", "NORMAL", NULL};
     json_t *out = pick(mesh, mesh_keys), *primitives = json_array(), *primitive;
     size_t i;
     json_array_foreach(json_object_get(mesh, "primitives"), i, primitive)
@@ -121,10 +127,12 @@ static void list(char *line, size_t size, const char *before, const char *text)
 void gltf_json_warn(const GltfJson *json, const char *path)
 {
     static const char *const texts[NOTE_COUNT] = {
-        [NOTE_TEXTURES] = "textures",
+        [NOTE_TEXTURES] = "normal, occlusion and emissive textures",
+        [NOTE_IMAGES] = "images other than PNG and JPEG",
+        [NOTE_TEXTURE_TRANSFORMS] = "texture transforms",
         [NOTE_EMISSIVE] = "emissive colours",
         [NOTE_COLORS] = "vertex colours",
-        [NOTE_UVS] = "texture coordinates other than one set of floats",
+        [NOTE_UVS] = "metallic-roughness textures with other coordinates than the base colour's",
         [NOTE_POINTS_LINES] = "points and lines",
         [NOTE_MORPHS] = "morph targets",
         [NOTE_SKINS] = "skins",

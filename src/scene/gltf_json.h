@@ -22,9 +22,30 @@ enum {
     MODE_FAN = 6
 };
 
+/* An accessor's componentType. */
+enum {
+    TYPE_INT8 = 5120,
+    TYPE_UINT8,
+    TYPE_INT16,
+    TYPE_UINT16,
+    TYPE_UINT32 = 5125,
+    TYPE_FLOAT
+};
+
+/* GL's names for what a sampler may say. */
+enum {
+    FILTER_NEAREST = 9728,
+    FILTER_LINEAR,
+    SAMPLER_REPEAT = 10497,
+    SAMPLER_CLAMP = 33071,
+    SAMPLER_MIRROR = 33648
+};
+
 /* What a file may have and Peel does not model; a bit each. */
 typedef enum GltfNote {
     NOTE_TEXTURES = 0,
+    NOTE_IMAGES,
+    NOTE_TEXTURE_TRANSFORMS,
     NOTE_EMISSIVE,
     NOTE_COLORS,
     NOTE_UVS,
@@ -63,6 +84,9 @@ bool gltf_json_drawn(const json_t *primitive);
 
 /* The element of the top-level array `key`; NULL when there is none. */
 json_t *gltf_json_element(const GltfJson *json, const char *key, size_t index);
+
+/* The size of a componentType; 0 for an unknown one. */
+size_t gltf_json_component_bytes(size_t type);
 
 /* A checked non-negative integer member, or fallback. */
 size_t gltf_json_index(const json_t *object, const char *key, size_t fallback);

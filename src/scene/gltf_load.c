@@ -4,6 +4,8 @@
 #include "scene/gltf_assimp.h"
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_read.h"
+#include "scene/gltf_surface.h"
+#include "scene/gltf_texture.h"
 
 #include <assimp/material.h>
 #include <assimp/scene.h>
@@ -23,6 +25,8 @@ typedef struct Loader {
     const GltfJson *json;
     const struct aiScene *assimp;
     Builder builder;
+    GltfBytes bytes;
+    GltfTextures textures;
     uint32_t *materials; /* ours, by Assimp's index; UINT32_MAX until used */
     MeshKey *keys;
     size_t key_count, key_room;
@@ -57,8 +61,9 @@ static bool material_flag(const struct aiMaterial *from, const char *key)
     return value != 0;
 }
 
-/* Assimp fills in glTF's defaults: base colour 1, metallic 1, roughness 1, OPAQUE, cutoff 0.5. */
-static uint32_t add_material(Loader *loader, const struct aiMaterial *from)
+/* Assimp fills in glTF's defaults: base colour 1, metallic 1, roughness 1, OPAQUE, cutoff 0.5.
+ * json: the same material in the document; NULL for the default one. */
+static uint32_t add_material(Loader *loader, const struct aiMaterial *from, const json_t *json)
 {
     Material material = {.occlusion = 1.0f};
     struct aiColor4D color = {1.0f, 1.0f, 1.0f, 1.0f};
@@ -78,6 +83,12 @@ static uint32_t add_material(Loader *loader, const struct aiMaterial *from)
         material.alpha_mode = ALPHA_MASK;
     else if (mode.length && strcmp(mode.data, "OPAQUE") != 0)
         fail(loader, "a material with alphaMode OPAQUE, MASK or BLEND");
+    material.base_color_texture = gltf_texture_add(
+        &loader->textures, &loader->builder,
+        gltf_surface_texture(loader->json, json, "baseColorTexture"), TEXTURE_SRGB);
+    material.metallic_roughness_texture = gltf_texture_add(
+        &loader->textures, &loader->builder,
+        gltf_surface_texture(loader->json, json, "metallicRoughnessTexture"), TEXTURE_LINEAR);
     return builder_material(&loader->builder, &material, name.data);
 }
 
@@ -92,21 +103,46 @@ static Matrix from_assimp(const struct aiMatrix4x4 *a)
                      (double)a->d4}};
 }
 
+static bool same_key(const MeshKey *a, const MeshKey *b)
+{
+    return a->position == b->position && a->normal == b->normal && a->uv == b->uv &&
+           a->indices == b->indices && a->mode == b->mode;
+}
+
+static Result make_mesh(Loader *loader, const MeshKey *key, const struct aiMesh *from,
+                        const char *label, Mesh *out)
+{
+    const json_t *position = gltf_json_element(loader->json, "accessors", key->position);
+    size_t vertices = gltf_json_index(position, "count", 0), count = vertices;
+    if (key->indices != SIZE_MAX)
+        count =
+            gltf_json_index(gltf_json_element(loader->json, "accessors", key->indices), "count", 0);
+    if (from->mNumVertices != vertices)
+        return result_fail(RESULT_BAD_INPUT, "%s: %u vertices from Assimp, expected the file's %zu",
+                           label, from->mNumVertices, vertices);
+    float *uv = NULL;
+    Result result = key->uv == SIZE_MAX ? RESULT_OK : gltf_bytes_uv(&loader->bytes, key->uv, &uv);
+    if (!result)
+        result = gltf_mesh_convert(from, key->mode == MODE_TRIANGLES ? count / 3 : count - 2, uv,
+                                   label, out);
+    free(uv);
+    return result;
+}
+
 static uint32_t find_mesh(Loader *loader, const json_t *primitive, const struct aiMesh *from,
                           const char *label)
 {
     const json_t *attributes = json_object_get(primitive, "attributes");
+    char uv[UV_NAME_SIZE];
+    gltf_surface_uv_name(loader->json, primitive, uv);
     MeshKey key = {.position = gltf_json_index(attributes, "POSITION", SIZE_MAX),
                    .normal = gltf_json_index(attributes, "NORMAL", SIZE_MAX),
-                   .uv = gltf_json_index(attributes, "TEXCOORD_0", SIZE_MAX),
+                   .uv = gltf_json_index(attributes, uv, SIZE_MAX),
                    .indices = gltf_json_index(primitive, "indices", SIZE_MAX),
                    .mode = gltf_json_index(primitive, "mode", MODE_TRIANGLES)};
-    for (size_t i = 0; i < loader->key_count; i++) {
-        const MeshKey *known = &loader->keys[i];
-        if (known->position == key.position && known->normal == key.normal && known->uv == key.uv &&
-            known->indices == key.indices && known->mode == key.mode)
-            return known->mesh;
-    }
+    for (size_t i = 0; i < loader->key_count; i++)
+        if (same_key(&loader->keys[i], &key))
+            return loader->keys[i].mesh;
     void *keys = loader->keys;
     if (!loader->builder.result)
         loader->builder.result =
@@ -114,15 +150,24 @@ static uint32_t find_mesh(Loader *loader, const json_t *primitive, const struct 
     if (loader->builder.result)
         return 0;
     loader->keys = keys;
-    const json_t *source = gltf_json_element(loader->json, "accessors",
-                                             key.indices != SIZE_MAX ? key.indices : key.position);
-    size_t count = gltf_json_index(source, "count", 0);
     Mesh mesh = {0};
-    Result made =
-        gltf_mesh_convert(from, key.mode == MODE_TRIANGLES ? count / 3 : count - 2, label, &mesh);
+    Result made = make_mesh(loader, &key, from, label, &mesh);
     key.mesh = builder_mesh(&loader->builder, made, &mesh);
     loader->keys[loader->key_count++] = key;
     return key.mesh;
+}
+
+/* The material of a primitive, Assimp's number being `number`: one for every material of the
+ * document, though not always the same one, and one more for the default material. */
+static uint32_t find_material(Loader *loader, const json_t *primitive, unsigned number)
+{
+    uint32_t *material = &loader->materials[number];
+    if (*material == UINT32_MAX)
+        *material =
+            add_material(loader, loader->assimp->mMaterials[number],
+                         gltf_json_element(loader->json, "materials",
+                                           gltf_json_index(primitive, "material", SIZE_MAX)));
+    return *material;
 }
 
 static void add_instances(Loader *loader, const json_t *node, const struct aiNode *from,
@@ -144,10 +189,7 @@ static void add_instances(Loader *loader, const json_t *node, const struct aiNod
         const struct aiMesh *mesh = loader->assimp->mMeshes[from->mMeshes[drawn++]];
         snprintf(label, sizeof label, "%s: mesh %zu primitive %zu", loader->path, number, i);
         Instance instance = {.world = *world, .mesh = find_mesh(loader, primitive, mesh, label)};
-        uint32_t *material = &loader->materials[mesh->mMaterialIndex];
-        if (*material == UINT32_MAX)
-            *material = add_material(loader, loader->assimp->mMaterials[mesh->mMaterialIndex]);
-        instance.material = *material;
+        instance.material = find_material(loader, primitive, mesh->mMaterialIndex);
         builder_instance(&loader->builder, &instance, name);
     }
 }
@@ -330,7 +372,8 @@ Result gltf_load(const char *path, Scene *out)
     Result result = gltf_read(path, &json);
     if (result)
         return result;
-    Loader loader = {.path = path, .json = &json};
+    Loader loader = {.path = path, .json = &json, .bytes = {.path = path, .json = &json}};
+    loader.textures.bytes = &loader.bytes;
     result = gltf_assimp_import(path, &json, &loader.assimp);
     if (!result)
         result = convert(&loader, out);
@@ -343,6 +386,8 @@ Result gltf_load(const char *path, Scene *out)
     gltf_assimp_release(loader.assimp);
     free(loader.materials);
     free(loader.keys);
+    gltf_texture_free(&loader.textures);
+    gltf_bytes_free(&loader.bytes);
     gltf_json_free(&json);
     return name_file(path, result);
 }

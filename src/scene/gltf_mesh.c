@@ -17,7 +17,7 @@ static Result check_vectors(const struct aiVector3D *vectors, unsigned count, co
     return RESULT_OK;
 }
 
-static Result check(const struct aiMesh *from, size_t triangles, const char *label)
+static Result check(const struct aiMesh *from, size_t triangles, const float *uv, const char *label)
 {
     if (!from->mVertices || from->mNumVertices == 0 || from->mNumFaces == 0)
         return result_fail(RESULT_BAD_INPUT, "%s: no vertices or no triangles", label);
@@ -34,33 +34,33 @@ static Result check(const struct aiMesh *from, size_t triangles, const char *lab
     Result result = check_vectors(from->mVertices, from->mNumVertices, "position", label);
     if (!result && from->mNormals)
         result = check_vectors(from->mNormals, from->mNumVertices, "normal", label);
-    if (!result && from->mTextureCoords[0])
-        result =
-            check_vectors(from->mTextureCoords[0], from->mNumVertices, "texture coordinate", label);
+    for (unsigned i = 0; !result && uv && i < from->mNumVertices; i++)
+        if (!isfinite(uv[2 * (size_t)i]) || !isfinite(uv[2 * (size_t)i + 1]))
+            result =
+                result_fail(RESULT_BAD_INPUT, "%s: texture coordinate %u is not finite", label, i);
     return result;
 }
 
-static Result add_uv_array(const struct aiMesh *from, Mesh *out)
+static Result add_uv_array(const float *uv, Mesh *out)
 {
-    if (!from->mTextureCoords[0])
+    if (!uv)
         return RESULT_OK;
     out->uv = memory_array((size_t)out->vertex_count * 2, sizeof *out->uv);
     return out->uv ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
-static void copy_vertex(const struct aiMesh *from, unsigned source, Mesh *out, size_t vertex)
+static void copy_vertex(const struct aiMesh *from, const float *uv, size_t source, Mesh *out,
+                        size_t vertex)
 {
     memcpy(out->position + 3 * vertex, &from->mVertices[source], 3 * sizeof(float));
     if (from->mNormals)
         memcpy(out->normal + 3 * vertex, &from->mNormals[source], 3 * sizeof(float));
-    if (out->uv) {
-        out->uv[2 * vertex] = from->mTextureCoords[0][source].x;
-        out->uv[2 * vertex + 1] = 1.0f - from->mTextureCoords[0][source].y;
-    }
+    if (out->uv)
+        memcpy(out->uv + 2 * vertex, uv + 2 * source, 2 * sizeof(float));
 }
 
 /* map: UINT32_MAX for every vertex of Assimp's. */
-static Result convert_shared(const struct aiMesh *from, uint32_t *map, Mesh *out)
+static Result convert_shared(const struct aiMesh *from, const float *uv, uint32_t *map, Mesh *out)
 {
     uint32_t used = 0;
     for (unsigned f = 0; f < from->mNumFaces; f++)
@@ -71,12 +71,12 @@ static Result convert_shared(const struct aiMesh *from, uint32_t *map, Mesh *out
             map[v] = used++;
     Result result = shapes_allocate(used, from->mNumFaces, out);
     if (!result)
-        result = add_uv_array(from, out);
+        result = add_uv_array(uv, out);
     if (result)
         return result;
     for (unsigned v = 0; v < from->mNumVertices; v++)
         if (map[v] != UINT32_MAX)
-            copy_vertex(from, v, out, map[v]);
+            copy_vertex(from, uv, v, out, map[v]);
     for (unsigned f = 0; f < from->mNumFaces; f++)
         for (int k = 0; k < 3; k++)
             out->index[3 * (size_t)f + k] = map[from->mFaces[f].mIndices[k]];
@@ -98,18 +98,18 @@ static void flat_normal(const float *p, float out[3])
         out[i] = length > 0.0 && isfinite(length) ? (float)(n[i] / length) : (i == 2 ? 1.0f : 0.0f);
 }
 
-static Result convert_flat(const struct aiMesh *from, Mesh *out)
+static Result convert_flat(const struct aiMesh *from, const float *uv, Mesh *out)
 {
     if (from->mNumFaces > UINT32_MAX / 3)
         return result_fail(RESULT_UNSUPPORTED, "too many triangles without normals");
     Result result = shapes_allocate(3 * from->mNumFaces, from->mNumFaces, out);
     if (!result)
-        result = add_uv_array(from, out);
+        result = add_uv_array(uv, out);
     if (result)
         return result;
     for (size_t f = 0; f < from->mNumFaces; f++) {
         for (size_t k = 0; k < 3; k++) {
-            copy_vertex(from, from->mFaces[f].mIndices[k], out, 3 * f + k);
+            copy_vertex(from, uv, from->mFaces[f].mIndices[k], out, 3 * f + k);
             out->index[3 * f + k] = (uint32_t)(3 * f + k);
         }
         float normal[3];
@@ -120,10 +120,11 @@ static Result convert_flat(const struct aiMesh *from, Mesh *out)
     return RESULT_OK;
 }
 
-Result gltf_mesh_convert(const struct aiMesh *from, size_t triangles, const char *label, Mesh *out)
+Result gltf_mesh_convert(const struct aiMesh *from, size_t triangles, const float *uv,
+                         const char *label, Mesh *out)
 {
     *out = (Mesh){0};
-    Result result = check(from, triangles, label);
+    Result result = check(from, triangles, uv, label);
     if (result)
         return result;
     if (from->mNormals) {
@@ -131,10 +132,10 @@ Result gltf_mesh_convert(const struct aiMesh *from, size_t triangles, const char
         if (!map)
             return RESULT_NO_MEMORY;
         memset(map, 0xff, from->mNumVertices * sizeof *map);
-        result = convert_shared(from, map, out);
+        result = convert_shared(from, uv, map, out);
         free(map);
     } else {
-        result = convert_flat(from, out);
+        result = convert_flat(from, uv, out);
     }
     if (result)
         shapes_free(out);

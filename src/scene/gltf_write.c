@@ -2,6 +2,9 @@
 #include "base/memory.h"
 #include "scene/gltf.h"
 #include "scene/gltf_file.h"
+#include "scene/gltf_json.h"
+#include "scene/gltf_texture_write.h"
+#include "scene/texture.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -12,11 +15,6 @@
 enum {
     TARGET_VERTICES = 34962,
     TARGET_INDICES = 34963
-};
-enum {
-    TYPE_UINT16 = 5123,
-    TYPE_UINT32 = 5125,
-    TYPE_FLOAT = 5126
 };
 
 /* A material on a mesh is a mesh of its own in glTF; its accessors are shared. */
@@ -29,6 +27,7 @@ typedef struct Writer {
     unsigned char *bytes; /* the one buffer */
     size_t byte_count, byte_room;
     json_t *views, *accessors;
+    GltfTextureArrays textures;
     uint32_t *first_accessor; /* per mesh; UINT32_MAX where no instance uses it */
     Pair *pairs;
     size_t pair_count, pair_room;
@@ -89,10 +88,9 @@ static json_t *doubles(Writer *writer, const double *values, int count)
 
 /* ---- buffer --------------------------------------------------------------------------------- */
 
-/* A view of `size` bytes at the end of the buffer, on a 4-byte boundary, and an accessor of all
- * of it, which is returned for further properties (borrowed; NULL after a failure). */
-static json_t *add_accessor(Writer *writer, const void *data, size_t size, int target, int type,
-                            const char *shape, size_t count)
+/* A view of `size` bytes at the end of the buffer, on a 4-byte boundary: borrowed, NULL after a
+ * failure. */
+static json_t *add_view(Writer *writer, const void *data, size_t size)
 {
     size_t begin = writer->byte_count, end = begin + (size + 3) / 4 * 4;
     void *bytes = writer->bytes;
@@ -108,13 +106,24 @@ static json_t *add_accessor(Writer *writer, const void *data, size_t size, int t
     put_integer(writer, view, "buffer", 0);
     put_integer(writer, view, "byteOffset", begin);
     put_integer(writer, view, "byteLength", size);
+    append(writer, writer->views, view);
+    return writer->out_of_json ? NULL : view;
+}
+
+/* A view and an accessor of all of it, which is returned for further properties (borrowed; NULL
+ * after a failure). */
+static json_t *add_accessor(Writer *writer, const void *data, size_t size, int target, int type,
+                            const char *shape, size_t count)
+{
+    json_t *view = add_view(writer, data, size);
+    if (!view)
+        return NULL;
     put_integer(writer, view, "target", (size_t)target);
     json_t *accessor = json_object();
-    put_integer(writer, accessor, "bufferView", json_array_size(writer->views));
+    put_integer(writer, accessor, "bufferView", json_array_size(writer->views) - 1);
     put_integer(writer, accessor, "componentType", (size_t)type);
     put_integer(writer, accessor, "count", count);
     put(writer, accessor, "type", json_string(shape));
-    append(writer, writer->views, view);
     append(writer, writer->accessors, accessor);
     return accessor;
 }
@@ -172,6 +181,14 @@ static void add_geometry(Writer *writer, uint32_t index)
                      TARGET_VERTICES, TYPE_FLOAT, "VEC2", mesh->vertex_count);
 }
 
+/* A texture's PNG file, for gltf_texture_write. */
+static Result embed_image(void *context, const unsigned char *bytes, size_t count, size_t *view)
+{
+    Writer *writer = context;
+    *view = json_array_size(writer->views);
+    return add_view(writer, bytes, count) ? RESULT_OK : writer->result;
+}
+
 /* ---- pieces --------------------------------------------------------------------------------- */
 
 static size_t find_pair(Writer *writer, const Instance *instance)
@@ -211,6 +228,17 @@ static json_t *mesh_json(Writer *writer, const Pair *pair)
     return mesh;
 }
 
+/* number: 1 + index into the scene's textures, 0 for none. */
+static void put_texture(Writer *writer, json_t *object, const char *key, uint32_t number,
+                        TextureEncoding encoding)
+{
+    if (!number)
+        return;
+    json_t *info = json_object();
+    put_integer(writer, info, "index", writer->textures.index[encoding][number - 1] - 1);
+    put(writer, object, key, info);
+}
+
 static json_t *material_json(Writer *writer, const Material *material)
 {
     static const char *const modes[] = {"OPAQUE", "MASK", "BLEND"};
@@ -219,6 +247,10 @@ static json_t *material_json(Writer *writer, const Material *material)
     put(writer, metallic_roughness, "baseColorFactor", floats(writer, material->base_color, 4));
     put(writer, metallic_roughness, "metallicFactor", json_real((double)material->metallic));
     put(writer, metallic_roughness, "roughnessFactor", json_real((double)material->roughness));
+    put_texture(writer, metallic_roughness, "baseColorTexture", material->base_color_texture,
+                TEXTURE_SRGB);
+    put_texture(writer, metallic_roughness, "metallicRoughnessTexture",
+                material->metallic_roughness_texture, TEXTURE_LINEAR);
     put(writer, json, "pbrMetallicRoughness", metallic_roughness);
     put(writer, json, "alphaMode", json_string(modes[material->alpha_mode]));
     if (material->alpha_mode == ALPHA_MASK)
@@ -363,7 +395,6 @@ static json_t *document(Writer *writer)
     const Scene *scene = writer->scene;
     json_t *root = json_object(), *asset = json_object();
     json_t *meshes = json_array(), *materials = json_array(), *cameras = json_array();
-    writer->views = json_array();
     writer->accessors = json_array();
     put(writer, asset, "version", json_string("2.0"));
     put(writer, asset, "generator", json_string("Peel"));
@@ -378,9 +409,12 @@ static json_t *document(Writer *writer)
         append(writer, cameras, camera_json(writer, &scene->cameras[i]));
     put_array(writer, root, "meshes", meshes);
     put_array(writer, root, "materials", materials);
+    put_array(writer, root, "textures", json_incref(writer->textures.textures));
+    put_array(writer, root, "samplers", json_incref(writer->textures.samplers));
+    put_array(writer, root, "images", json_incref(writer->textures.images));
     put_array(writer, root, "cameras", cameras);
     put_array(writer, root, "accessors", writer->accessors);
-    put_array(writer, root, "bufferViews", writer->views);
+    put_array(writer, root, "bufferViews", json_incref(writer->views));
     return root;
 }
 
@@ -393,7 +427,8 @@ static void put_buffer(Writer *writer, json_t *root, bool binary)
     json_t *buffer = json_object(), *buffers = json_array();
     put_integer(writer, buffer, "byteLength", writer->byte_count);
     if (!binary) {
-        char *uri = gltf_file_data_uri(writer->bytes, writer->byte_count);
+        char *uri =
+            gltf_file_data_uri("application/octet-stream", writer->bytes, writer->byte_count);
         put(writer, buffer, "uri", uri ? json_string(uri) : NULL);
         free(uri);
     }
@@ -407,8 +442,9 @@ static Result write_document(Writer *writer, const char *path, bool binary)
     put_buffer(writer, root, binary);
     Result result = writer->result;
     if (!result && writer->byte_count > INT32_MAX)
-        result = result_fail(RESULT_UNSUPPORTED, "%s: %zu bytes of geometry, expected below 2^31",
-                             path, writer->byte_count);
+        result = result_fail(RESULT_UNSUPPORTED,
+                             "%s: %zu bytes of geometry and images, expected below 2^31", path,
+                             writer->byte_count);
     char *text = result || writer->out_of_json
                      ? NULL
                      : json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
@@ -442,7 +478,13 @@ Result gltf_write(const Scene *scene, const char *path)
     if (!writer.first_accessor)
         return RESULT_NO_MEMORY;
     memset(writer.first_accessor, 0xff, scene->mesh_count * sizeof *writer.first_accessor);
-    Result result = write_document(&writer, path, kind == 1);
+    writer.views = json_array();
+    const GltfImageSink sink = {kind == 1 ? embed_image : NULL, &writer};
+    Result result = gltf_texture_write(scene, path, &sink, &writer.textures);
+    if (!result)
+        result = write_document(&writer, path, kind == 1);
+    gltf_texture_write_free(&writer.textures);
+    json_decref(writer.views);
     free(writer.first_accessor);
     free(writer.pairs);
     free(writer.bytes);

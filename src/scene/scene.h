@@ -110,8 +110,8 @@ Result scene_validate(const Scene *scene);
 /* World-space bounding box of all instances. False when there is no vertex. */
 bool scene_bounds(const Scene *scene, double low[3], double high[3]);
 
-/* Makes every material opacity A in [0, 1]: BLEND below 1, OPAQUE at 1 (a MASK material keeps its
- * mode at 1 only). */
+/* Makes every material's opacity, which the alpha of a texture multiplies, A in [0, 1]: BLEND below
+ * 1, OPAQUE at 1 (a MASK material keeps its mode at 1 only). */
 void scene_override_opacity(Scene *scene, float opacity);
 
 /* A camera that sees the whole scene, from a little above and the side; vertical field of view

@@ -46,6 +46,30 @@ head -c 3000 whole.glb >truncated.glb
 head -c 19 whole.glb >header.glb
 sed 's/"count": *[0-9]*/"count": 99999999/' "$scenes/crossing_planes.gltf" >count.gltf
 
+# textured NAME IMAGE [SAMPLER]: a triangle whose base colour is the image.
+textured() {
+    positions=$(printf '%048d' 0 | tr 0 A)
+    cat >"$1" <<END
+{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"buffers":[{"byteLength":36,"uri":"data:;base64,$positions"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],
+"samplers":[${3-{\}}],"textures":[{"source":0,"sampler":0}],"images":[$2]}
+END
+}
+"$peel" render "$scenes/tutorial.gltf" --size 8x8 -o whole.png >"$sink" || failed=$((failed + 1))
+head -c 60 whole.png >truncated.png
+textured image_missing.gltf '{"uri":"nosuch.png"}'
+textured image_truncated.gltf '{"uri":"truncated.png"}'
+textured image_text.gltf '{"uri":"text.gltf"}'
+textured image_view.gltf '{"bufferView":0}'
+textured image_index.gltf '{"bufferView":1}'
+textured sampler.gltf '{"uri":"whole.png"}' '{"wrapS":1}'
+textured image_whole.gltf '{"uri":"whole.png"}'
+"$peel" render image_whole.gltf --size 8x8 -o textured.png >"$sink" || failed=$((failed + 1))
+
 out="-o out.png"
 # shellcheck disable=SC2086 # $out is two words
 {
@@ -61,6 +85,12 @@ out="-o out.png"
     refuse 'truncated glb' 'truncated.glb' render truncated.glb $out
     refuse 'glb header only' 'header.glb' render header.glb $out
     refuse 'counts past the buffer' 'count.gltf' render count.gltf $out
+    refuse 'missing image' 'image 0: no file nosuch.png' render image_missing.gltf $out
+    refuse 'truncated image' 'image 0: cannot decode the PNG' render image_truncated.gltf $out
+    refuse 'image of text' 'image 0: expected PNG or JPEG' render image_text.gltf $out
+    refuse 'image of positions' 'image 0: expected PNG or JPEG' render image_view.gltf $out
+    refuse 'image out of range' 'image 0: expected' render image_index.gltf $out
+    refuse 'wrap mode' 'sampler 0: expected wrapS' render sampler.gltf $out
     refuse 'size 0' '--size' render tutorial $out --size 0x10
     refuse 'size huge' '--size' render tutorial $out --size 100000x100000
     refuse 'size text' '--size' render tutorial $out --size big

@@ -9,7 +9,7 @@
 /* A triangle with vertices of its own, so that any set of them makes a scene. */
 typedef struct Triangle {
     uint32_t instance;
-    float position[9], normal[9];
+    float position[9], normal[9], uv[6];
 } Triangle;
 
 typedef struct Minimiser {
@@ -20,7 +20,7 @@ typedef struct Minimiser {
     Triangle *triangles, *candidate;
     uint32_t count;
     Scene scene; /* as last assembled */
-    float *position, *normal;
+    float *position, *normal, *uv;
     uint32_t *index;
 } Minimiser;
 
@@ -37,10 +37,12 @@ static void assemble(Minimiser *m, const Triangle *triangles, uint32_t count)
             scene->instances[next].mesh = (uint32_t)next;
             scene->meshes[next] = (Mesh){.position = m->position + 9 * (size_t)t,
                                          .normal = m->normal + 9 * (size_t)t,
+                                         .uv = m->uv + 6 * (size_t)t,
                                          .index = m->index};
         }
         memcpy(m->position + 9 * (size_t)t, triangle->position, sizeof triangle->position);
         memcpy(m->normal + 9 * (size_t)t, triangle->normal, sizeof triangle->normal);
+        memcpy(m->uv + 6 * (size_t)t, triangle->uv, sizeof triangle->uv);
         Mesh *mesh = &scene->meshes[scene->instance_count - 1];
         mesh->triangle_count++;
         mesh->vertex_count += 3;
@@ -120,6 +122,10 @@ static void reduce_settings(Minimiser *m)
 {
     DEFAULTED(opaque_blend);
     DEFAULTED(gbuffer);
+    DEFAULTED(position);
+    DEFAULTED(depth_range);
+    DEFAULTED(ggx);
+    DEFAULTED(back_light);
     DEFAULTED(depth);
     DEFAULTED(accum);
     DEFAULTED(depth_func);
@@ -144,11 +150,14 @@ static void take_apart(Minimiser *m)
     for (uint32_t i = 0; i < scene->instance_count; i++) {
         const Mesh *mesh = &scene->meshes[scene->instances[i].mesh];
         for (uint32_t corner = 0; corner < 3 * mesh->triangle_count; corner++) {
-            uint32_t vertex = 3 * mesh->index[corner], k = corner % 3;
+            uint32_t vertex = 3 * mesh->index[corner], pair = 2 * mesh->index[corner];
+            uint32_t k = corner % 3;
             Triangle *triangle = &m->triangles[m->count];
             triangle->instance = i;
             memcpy(&triangle->position[3 * k], &mesh->position[vertex], 3 * sizeof(float));
             memcpy(&triangle->normal[3 * k], &mesh->normal[vertex], 3 * sizeof(float));
+            if (mesh->uv)
+                memcpy(&triangle->uv[2 * k], &mesh->uv[pair], 2 * sizeof(float));
             m->count += k == 2;
         }
     }
@@ -161,10 +170,11 @@ static bool allocate(Minimiser *m)
     m->candidate = memory_array(triangles, sizeof *m->candidate);
     m->position = memory_array(9 * triangles, sizeof *m->position);
     m->normal = memory_array(9 * triangles, sizeof *m->normal);
+    m->uv = memory_array(6 * triangles, sizeof *m->uv);
     m->index = memory_array(3 * triangles, sizeof *m->index);
     m->scene.meshes = memory_array(m->original->instance_count, sizeof *m->scene.meshes);
     m->scene.instances = memory_array(m->original->instance_count, sizeof *m->scene.instances);
-    if (!m->triangles || !m->candidate || !m->position || !m->normal || !m->index ||
+    if (!m->triangles || !m->candidate || !m->position || !m->normal || !m->uv || !m->index ||
         !m->scene.meshes || !m->scene.instances)
         return false;
     for (size_t i = 0; i < 3 * triangles; i++)
@@ -197,6 +207,7 @@ Result minimise(const Scene *scene, const RenderDesc *desc, MinimiseFails fails,
     if (result != RESULT_OK) {
         free(m.position);
         free(m.normal);
+        free(m.uv);
         free(m.index);
         free(m.scene.meshes);
         free(m.scene.instances);
@@ -210,6 +221,7 @@ void minimise_free(Minimal *minimal)
     if (minimal->scene.mesh_count > 0) { /* the first mesh begins the arrays of all */
         free(minimal->scene.meshes[0].position);
         free(minimal->scene.meshes[0].normal);
+        free(minimal->scene.meshes[0].uv);
         free(minimal->scene.meshes[0].index);
     }
     free(minimal->scene.meshes);
@@ -220,17 +232,21 @@ void minimise_free(Minimal *minimal)
 void minimise_options(const RenderDesc *desc, char *text, size_t size)
 {
     static const char *const culls[] = {"gltf", "seed", "none"};
+    static const char *const ranges[] = {"gl", "zero-one", "reversed"};
     bool seed = desc->opaque_blend == OPAQUE_BLEND_SEED;
-    int length =
-        snprintf(text, size,
-                 "%s--size %dx%d --depth %s --accum %s --gbuffer %s --depth-func %s --peel-test %s "
-                 "--cull %s --normals %s --fma %s",
-                 seed ? "--profile seed " : "", desc->width, desc->height,
-                 format_info(render_desc_depth(desc))->name, format_info(desc->accum)->name,
-                 desc->gbuffer == GBUFFER_SEED ? "seed" : "full",
-                 desc->depth_func == DEPTH_LEQUAL ? "lequal" : "less",
-                 desc->peel_test == PEEL_TEST_RAW ? "raw" : "stored", culls[desc->cull],
-                 desc->normals == NORMALS_KEPT ? "kept" : "faced", desc->unfused ? "off" : "on");
+    bool no_position = render_desc_layout(desc).position == FORMAT_NONE;
+    int length = snprintf(
+        text, size,
+        "%s--size %dx%d --depth %s --accum %s --gbuffer %s --position %s --depth-range %s "
+        "--depth-func %s --peel-test %s --cull %s --normals %s --ggx %s --back-light %s --fma %s",
+        seed ? "--profile seed " : "", desc->width, desc->height,
+        format_info(render_desc_depth(desc))->name, format_info(desc->accum)->name,
+        gbuffer_name(desc->gbuffer), no_position ? "reconstruct" : "buffer",
+        ranges[desc->depth_range], desc->depth_func == DEPTH_LEQUAL ? "lequal" : "less",
+        desc->peel_test == PEEL_TEST_RAW ? "raw" : "stored", culls[desc->cull],
+        desc->normals == NORMALS_KEPT ? "kept" : "faced",
+        desc->ggx == GGX_STABLE ? "stable" : "source", desc->back_light ? "on" : "off",
+        desc->unfused ? "off" : "on");
     if (desc->passes > 0 && length > 0 && (size_t)length < size)
         length += snprintf(text + length, size - (size_t)length, " --passes %d", desc->passes);
     if (desc->lights != 0 && length > 0 && (size_t)length < size)

@@ -1,6 +1,6 @@
-/* Random triangle soups as scenes, made by a seed: opaque, masked and transparent materials,
- * mirrored instances, coplanar duplicates, triangles through every plane of the view volume, now
- * and then one without area or a vertex without normal. */
+/* Random triangle soups as scenes, made by a seed: opaque, masked and transparent materials, half
+ * of the soups with textures, mirrored instances, coplanar duplicates, triangles through every
+ * plane of the view volume, now and then one without area or a vertex without normal. */
 #ifndef PEEL_TESTS_SOUP_H
 #define PEEL_TESTS_SOUP_H
 
@@ -13,7 +13,9 @@ enum {
     SOUP_MESHES = 6,
     SOUP_INSTANCES = 12,
     SOUP_TRIANGLES = 24,
-    SOUP_LIGHTS = 3
+    SOUP_LIGHTS = 3,
+    SOUP_TEXTURES = 4,
+    SOUP_TEXELS = 9 /* at most, per side */
 };
 
 /* Owns everything by value: nothing to free. Do not copy once made. */
@@ -21,7 +23,10 @@ typedef struct Soup {
     Scene scene;
     Mesh meshes[SOUP_MESHES];
     float position[SOUP_MESHES][9 * SOUP_TRIANGLES], normal[SOUP_MESHES][9 * SOUP_TRIANGLES];
+    float uv[SOUP_MESHES][6 * SOUP_TRIANGLES];
     uint32_t index[SOUP_MESHES][3 * SOUP_TRIANGLES];
+    Texture textures[SOUP_TEXTURES];
+    float texels[SOUP_TEXTURES][4 * SOUP_TEXELS * SOUP_TEXELS];
     Material materials[8];
     Instance instances[SOUP_INSTANCES];
     Light lights[SOUP_LIGHTS];
@@ -92,6 +97,56 @@ static inline void soup_instances(Random *random, Soup *soup)
     }
 }
 
+/* Multiples of 1/8 often lie on the border between texels. */
+static inline float soup_coordinate(Random *random)
+{
+    static const float odd[] = {0.0f, -0.0f, 1.0f, -1.0f, 1e-40f, 1e-30f, -1e-10f, 1e6f, -3e15f};
+    switch (random_bits(random) % 8) {
+    case 0:
+        return odd[random_bits(random) % (sizeof odd / sizeof *odd)] / 3.0f;
+    case 1:
+    case 2:
+        return (float)(random_bits(random) % 33) * 0.125f - 2.0f;
+    default:
+        return (float)random_range(random, -2.5, 2.5);
+    }
+}
+
+/* Textures for about half of the materials, uvs for most meshes. Called last, so that without it
+ * the rest of the soup is the same. */
+static inline void soup_texture(Random *random, Soup *soup)
+{
+    for (int t = 0; t < SOUP_TEXTURES; t++) {
+        Texture *texture = &soup->textures[t];
+        *texture = (Texture){.width = 1 + (uint32_t)(random_bits(random) % SOUP_TEXELS),
+                             .height = 1 + (uint32_t)(random_bits(random) % SOUP_TEXELS),
+                             .texels = soup->texels[t],
+                             .wrap_s = (TextureWrap)(random_bits(random) % 3),
+                             .wrap_t = (TextureWrap)(random_bits(random) % 3),
+                             .nearest = random_bits(random) % 2};
+        for (uint32_t i = 0; i < 4 * texture->width * texture->height; i++)
+            texture->texels[i] = (float)(random_bits(random) % 256) / 255.0f;
+    }
+    for (int m = 0; m < SOUP_MESHES; m++) {
+        soup->meshes[m].uv = random_bits(random) % 8 ? soup->uv[m] : NULL;
+        for (int i = 0; i < 6 * SOUP_TRIANGLES; i++)
+            soup->uv[m][i] = soup_coordinate(random);
+    }
+    for (int i = 0; i < 8; i++) {
+        Material *material = &soup->materials[i];
+        if (random_bits(random) % 2)
+            material->base_color_texture = 1 + (uint32_t)(random_bits(random) % SOUP_TEXTURES);
+        if (random_bits(random) % 2)
+            material->metallic_roughness_texture =
+                1 + (uint32_t)(random_bits(random) % SOUP_TEXTURES);
+        if (material->alpha_mode == ALPHA_MASK) /* often the alpha of a texel */
+            material->alpha_cutoff =
+                soup->texels[random_bits(random) % SOUP_TEXTURES][random_bits(random) % 4];
+    }
+    soup->scene.textures = soup->textures;
+    soup->scene.texture_count = SOUP_TEXTURES;
+}
+
 static inline void soup_make(Random *random, Soup *soup)
 {
     memset(soup, 0, sizeof *soup);
@@ -138,6 +193,8 @@ static inline void soup_make(Random *random, Soup *soup)
     };
     for (int c = 0; c < 3 && random_bits(random) % 2; c++)
         soup->scene.background[c] = (float)random_unit(random);
+    if (random_bits(random) % 2)
+        soup_texture(random, soup);
 }
 
 /* Makes mesh and instance `index`, the scene's last, a transparent square facing the eye at view

@@ -231,6 +231,15 @@ static inline void soup_extremes(Random *random, Soup *soup)
     }
 }
 
+/* No far plane, and one mesh so far away that depths round to its end. */
+static inline void soup_horizon(Random *random, Soup *soup)
+{
+    Mesh *mesh = &soup->meshes[random_bits(random) % SOUP_MESHES];
+    soup->camera.far = INFINITY;
+    for (uint32_t i = 0; i < 3 * mesh->vertex_count; i++)
+        mesh->position[i] = fmaxf(fminf(mesh->position[i] * 1e9f, 1e14f), -1e14f);
+}
+
 static inline void soup_round(Matrix *matrix, double scale)
 {
     for (int i = 0; i < 16; i++) {
@@ -272,6 +281,8 @@ static inline void soup_make_kind(Random *random, SoupKind kind, int width, int 
     soup->camera.far = window.far;
     soup_kind_meshes(random, kind, &window, soup);
     soup_extremes(random, soup);
+    if (!soup_kind_is_exact(kind) && random_bits(random) % 4 == 0)
+        soup_horizon(random, soup);
     for (int i = 0; i < SOUP_INSTANCES; i++)
         soup_round(&soup->instances[i].world, scale);
     if (!soup_kind_is_exact(kind) && random_bits(random) % 4 == 0) {

@@ -1,12 +1,9 @@
 /* ref/pipeline against OpenGL on seeded triangle soups, every buffer of the trace bit for bit. */
+#include "bits.h"
 #include "soup.h"
 #include "testing.h"
 
 #include "base/memory.h"
-#include "compare/against.h"
-#include "compare/store.h"
-#include "gl/gl_renderer.h"
-#include "ref/pipeline/pipeline.h"
 
 static void ok(Result result)
 {
@@ -20,47 +17,13 @@ static void make_soup(uint64_t seed, Soup *soup)
     ok(scene_validate(&soup->scene));
 }
 
-static void assert_no_difference(const Against *against)
-{
-    for (size_t i = 0; i < against->count; i++) {
-        const BufferMetrics *buffer = &against->buffers[i];
-        ck_assert_uint_gt(buffer->values, 0);
-        ck_assert_msg(buffer->differing == 0,
-                      "%s: %llu of %llu values differ, first at (%d, %d) channel %d, by at most "
-                      "%u ULP, %g (%a)",
-                      buffer->name, (unsigned long long)buffer->differing,
-                      (unsigned long long)buffer->values, buffer->first[0], buffer->first[1],
-                      buffer->first[2], buffer->max_ulp, buffer->max_abs, buffer->max_abs);
-    }
-}
-
 /* Renders with both and asserts equal bits; returns ref's counts. */
 static LayerStats compare(const Scene *scene, const RenderDesc *desc)
 {
-    TraceStore *driver;
-    Against against;
-    Frame ref, frame;
-    RenderDesc modelled = *desc;
-    modelled.ref_path = REF_PATH_DEFINITION;
-    ok(store_create(0, &driver));
-    ok(gl_render(scene, desc, store_sink(driver), &frame));
-    modelled.unfused = !frame.fused;
-    ok(against_create(driver, &against));
-    ok(pipeline_render(scene, &modelled, &against.sink, &ref));
-    ok(against_finish(&against));
-    assert_no_difference(&against);
-    ck_assert_int_eq(ref.peels, frame.peels);
-    ck_assert_uint_eq(against.count, (size_t)(5 + 6 * ref.peels + 2));
-    ck_assert_uint_eq(ref.layers.repeated, frame.layers.repeated);
-    size_t pixels = (size_t)desc->width * (size_t)desc->height;
-    ck_assert_mem_eq(ref.final.pixels, frame.final.pixels, pixels * 16);
-    ck_assert_mem_eq(ref.display.pixels, frame.display.pixels, pixels * 4);
-    LayerStats layers = ref.layers;
-    frame_free(&ref);
-    frame_free(&frame);
-    against_free(&against);
-    store_destroy(driver);
-    return layers;
+    Bits bits;
+    bits_compare(scene, desc, &bits);
+    ck_assert_msg(bits.differing == 0, "%s", bits.difference);
+    return bits.layers;
 }
 
 static const RenderDesc variants[] = {
@@ -82,6 +45,13 @@ static const RenderDesc variants[] = {
     {.back_light = true, .cull = CULL_NONE},
     {.ggx = GGX_STABLE, .back_light = true, .normals = NORMALS_KEPT, .accum = FORMAT_RGBA16F},
     {.ggx = GGX_STABLE, .back_light = true, .gbuffer = GBUFFER_SEED, .accum = FORMAT_RGBA8},
+    {.gbuffer = GBUFFER_COMPACT},
+    {.gbuffer = GBUFFER_COMPACT, .depth = FORMAT_D24, .peel_test = PEEL_TEST_RAW},
+    {.gbuffer = GBUFFER_COMPACT, .depth_range = DEPTH_RANGE_REVERSED, .depth_func = DEPTH_LEQUAL},
+    {.position = POSITION_RECONSTRUCT, .depth = FORMAT_D16},
+    {.position = POSITION_RECONSTRUCT,
+     .gbuffer = GBUFFER_SEED,
+     .depth_range = DEPTH_RANGE_ZERO_ONE},
 };
 
 START_TEST(test_soup)

@@ -35,7 +35,8 @@ static RenderDesc random_desc(Random *random)
                                              FORMAT_RGBA8};
         desc.depth = depths[random_bits(random) % 3];
         desc.accum = accums[random_bits(random) % 4];
-        desc.gbuffer = (GBufferFormat)(random_bits(random) % 2);
+        desc.gbuffer = (GBufferFormat)(random_bits(random) % 3);
+        desc.position = (PositionSource)(random_bits(random) % 2);
         desc.depth_range = (DepthRange)(random_bits(random) % 3);
         desc.depth_func = (DepthFunc)(random_bits(random) % 2);
         desc.peel_test = (PeelTest)(random_bits(random) % 2);
@@ -254,23 +255,21 @@ typedef struct Traced {
 static Traced expect_gbuffer(const Recorder *recorder, int *at, const char *prefix, int step,
                              const RenderDesc *desc)
 {
-    bool seed = desc->gbuffer == GBUFFER_SEED;
+    GBufferLayout layout = render_desc_layout(desc);
     const struct {
         const char *what;
         PixelFormat format;
     } rows[] = {
-        {"depth", render_desc_depth(desc)},
-        {"normal", FORMAT_RGBA32F},
-        {"position", seed ? FORMAT_RGBA16F : FORMAT_RGBA32F},
-        {"diffuse", seed ? FORMAT_RGBA8 : FORMAT_RGBA32F},
-        {"material", seed ? FORMAT_RGBA8 : FORMAT_RGBA32F},
-        {"primitive", FORMAT_R32UI},
+        {"depth", render_desc_depth(desc)}, {"normal", layout.normal},
+        {"position", layout.position},      {"diffuse", layout.diffuse},
+        {"material", layout.material},      {"primitive", FORMAT_R32UI},
     };
-    const Image *images[6];
+    const Image *images[6] = {NULL};
     for (int i = 0; i < 6; i++) {
         char name[48];
         snprintf(name, sizeof name, "%s.%s", prefix, rows[i].what);
-        images[i] = expect(recorder, at, name, step, rows[i].format);
+        if (rows[i].format != FORMAT_NONE)
+            images[i] = expect(recorder, at, name, step, rows[i].format);
     }
     return (Traced){.depth = images[0], .primitive = images[5]};
 }

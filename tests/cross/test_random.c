@@ -4,14 +4,12 @@
  * PEEL_TEST_SEED=N runs the one case that a failure names; PEEL_TEST_COUNT=N that many, from there
  * or from 1. A case that fails is reduced to a few triangles and written, as random-N.gltf in the
  * working directory, with the command that shows it. */
+#include "bits.h"
 #include "minimise.h"
 #include "soup_kinds.h"
 #include "testing.h"
 
-#include "compare/against.h"
-#include "compare/store.h"
 #include "gl/gl_renderer.h"
-#include "ref/pipeline/pipeline.h"
 #include "scene/gltf.h"
 
 #include <stdio.h>
@@ -41,11 +39,15 @@ static void random_formats(Random *random, RenderDesc *desc)
                                          FORMAT_RGBA8};
     desc->depth = depths[random_bits(random) % 3];
     desc->accum = accums[random_bits(random) % 4];
-    desc->gbuffer = (GBufferFormat)(random_bits(random) % 2);
+    desc->gbuffer = (GBufferFormat)(random_bits(random) % 3);
+    desc->position = (PositionSource)(random_bits(random) % 2);
+    desc->depth_range = (DepthRange)(random_bits(random) % 3);
     desc->depth_func = (DepthFunc)(random_bits(random) % 2);
     desc->peel_test = (PeelTest)(random_bits(random) % 2);
     desc->cull = (CullMode)(random_bits(random) % 3);
     desc->normals = (NormalMode)(random_bits(random) % 2);
+    desc->ggx = (GgxForm)(random_bits(random) % 2);
+    desc->back_light = random_bits(random) % 2;
     desc->opaque_blend = (OpaqueBlend)(random_bits(random) % 2);
 }
 
@@ -71,63 +73,19 @@ static RenderDesc random_desc(Random *random, SoupKind kind)
 
 static char difference[512]; /* what the latest comparison found first */
 
-static void add_buffers(const Against *against, const RenderDesc *desc, Totals *totals)
-{
-    for (size_t i = 0; i < against->count; i++) {
-        const BufferMetrics *buffer = &against->buffers[i];
-        totals->pixels += (uint64_t)desc->width * (uint64_t)desc->height;
-        totals->values += buffer->values;
-        totals->mismatches += buffer->differing;
-        if (buffer->differing > 0 && !*difference)
-            snprintf(difference, sizeof difference,
-                     "%s: %llu of %llu values differ, first at (%d, %d) channel %d, by at most %u "
-                     "ULP, %g (%a)",
-                     buffer->name, (unsigned long long)buffer->differing,
-                     (unsigned long long)buffer->values, buffer->first[0], buffer->first[1],
-                     buffer->first[2], buffer->max_ulp, buffer->max_abs, buffer->max_abs);
-    }
-}
-
-/* What no buffer of the trace shows. */
-static void add_frames(const Frame *ref, const Frame *driver, Totals *totals)
-{
-    size_t pixels = (size_t)ref->final.width * (size_t)ref->final.height;
-    bool same = ref->peels == driver->peels && ref->layers.repeated == driver->layers.repeated &&
-                memcmp(ref->final.pixels, driver->final.pixels, pixels * 16) == 0;
-    totals->fragments += ref->layers.fragments;
-    totals->mismatches += !same;
-    if (!same && !*difference)
-        snprintf(difference, sizeof difference,
-                 "%d peels of ref and %d of gl, %llu and %llu layers repeated, or the final image",
-                 ref->peels, driver->peels, (unsigned long long)ref->layers.repeated,
-                 (unsigned long long)driver->layers.repeated);
-}
-
 /* Renders with both. Returns the mismatches, which are added to totals with the rest, and sets
  * difference to the first. */
 static uint64_t compare(const Scene *scene, const RenderDesc *desc, Totals *totals)
 {
-    TraceStore *driver;
-    Against against;
-    Frame ref, frame;
-    RenderDesc modelled = *desc;
-    uint64_t before = totals->mismatches;
-    *difference = '\0';
-    modelled.ref_path = REF_PATH_DEFINITION;
-    ok(store_create(0, &driver));
-    ok(gl_render(scene, desc, store_sink(driver), &frame));
-    modelled.unfused = !frame.fused;
-    ok(against_create(driver, &against));
-    ok(pipeline_render(scene, &modelled, &against.sink, &ref));
-    ok(against_finish(&against));
-    add_buffers(&against, desc, totals);
-    add_frames(&ref, &frame, totals);
+    Bits bits;
+    bits_compare(scene, desc, &bits);
     totals->scenes++;
-    frame_free(&ref);
-    frame_free(&frame);
-    against_free(&against);
-    store_destroy(driver);
-    return totals->mismatches - before;
+    totals->pixels += bits.pixels;
+    totals->values += bits.values;
+    totals->fragments += bits.layers.fragments;
+    totals->mismatches += bits.differing;
+    memcpy(difference, bits.difference, sizeof difference);
+    return bits.differing;
 }
 
 static bool differs(const Scene *scene, const RenderDesc *desc)

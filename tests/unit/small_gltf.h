@@ -32,7 +32,7 @@ static inline const char *write_quad(const float *floats, const char *members)
     unsigned char bytes[116];
     memcpy(bytes, floats, 96);
     memcpy(bytes + 96, quad_indices, 20);
-    char *uri = gltf_file_data_uri(bytes, sizeof bytes);
+    char *uri = gltf_file_data_uri("application/octet-stream", bytes, sizeof bytes);
     ck_assert_ptr_nonnull(uri);
     snprintf(text, sizeof text,
              "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,"

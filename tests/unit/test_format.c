@@ -128,6 +128,28 @@ START_TEST(test_unorm_rounding)
 }
 END_TEST
 
+/* The sum is exact, or far from a tie: below 2^23 half a unit is in a float's mantissa. */
+START_TEST(test_clear_rounds_ties_up)
+{
+    ck_assert_uint_eq(unorm16_from_clear(0x1.b736b8p-1f), 56219); /* product 56218.5 */
+    ck_assert_uint_eq(unorm16_from_float(0x1.b736b8p-1f), 56218);
+    ck_assert_uint_eq(unorm16_from_clear(NAN), 0);
+    ck_assert_uint_eq(unorm16_from_clear(-1.0f), 0);
+    ck_assert_uint_eq(unorm16_from_clear(2.0f), 65535);
+    Random random = random_seed(2);
+    size_t ties = 0;
+    for (int i = 0; i < 2000000; i++) {
+        float x = (float)random_unit(&random);
+        double product = (double)(float)((double)x * 65535.0);
+        uint32_t expected = (uint32_t)floor(product + 0.5);
+        ties += unorm16_from_float(x) != expected;
+        if (unorm16_from_clear(x) != expected)
+            ck_abort_msg("%a: %u, expected %u", (double)x, unorm16_from_clear(x), expected);
+    }
+    ck_assert_uint_gt(ties, 100);
+}
+END_TEST
+
 START_TEST(test_half_round_trip)
 {
     for (uint32_t i = 0; i < 65536; i++) {
@@ -256,6 +278,7 @@ int main(void)
     tcase_add_test(tcase, test_depth16_codes);
     tcase_add_test(tcase, test_depth24_codes);
     tcase_add_test(tcase, test_unorm_rounding);
+    tcase_add_test(tcase, test_clear_rounds_ties_up);
     tcase_add_test(tcase, test_half_round_trip);
     tcase_add_test(tcase, test_half_truncates);
     tcase_add_test(tcase, test_depth_clamp);

@@ -73,7 +73,8 @@ static void visit_fragment(void *context, const Setup *setup, int x, int y)
             return;
     }
     uint32_t *stored = (uint32_t *)visit->target->depth.pixels + pixel;
-    if (!pass_depth_test(pass, depth.key, *stored))
+    if (!pass_depth_test(pass, depth.key, *stored) ||
+        fragment_masked(pass, setup, visit->primitive, x, y))
         return;
     *stored = depth.key;
     ((uint32_t *)visit->target->primitive.pixels)[pixel] = visit->primitive->id;
@@ -142,6 +143,7 @@ static void lighting_tile(Peel *state, uint32_t tile)
             Texel texel;
             float color[4];
             gbuffer_load(source, x, row, &texel);
+            fragment_decode(pass, key_at(&source->depth, pixel_index(pass, x, y)), x, y, &texel);
             if (!shade_pixel(&pass->view, &form, &texel, color))
                 continue;
             void *pixel = image_pixel(&state->accum, x, row);
@@ -264,7 +266,8 @@ static Result put_gbuffer(const Peel *state, TraceSink *trace, const GBuffer *bu
     };
     Result result = RESULT_OK;
     for (size_t i = 0; result == RESULT_OK && i < sizeof rows / sizeof rows[0]; i++)
-        result = put(state, trace, rows[i].what, rows[i].image);
+        if (rows[i].image->format != FORMAT_NONE)
+            result = put(state, trace, rows[i].what, rows[i].image);
     return result;
 }
 

@@ -1,0 +1,21 @@
+/* ref/pipeline against OpenGL on one scene: every buffer of the trace and the final image, bit for
+ * bit. Link bits.c. */
+#ifndef PEEL_TESTS_BITS_H
+#define PEEL_TESTS_BITS_H
+
+#include "frame/frame.h"
+
+typedef struct Bits {
+    uint64_t pixels, values; /* compared, over all buffers */
+    uint64_t differing;      /* values; and 1 where peels, repeats or the final image differ */
+    size_t buffers;          /* of the trace */
+    int peels;               /* of ref */
+    LayerStats layers;       /* of ref */
+    bool fused;              /* the driver's mode, which ref follows */
+    char difference[512];    /* the first one, "" if there is none */
+} Bits;
+
+/* Renders with both and compares. The test fails where one of them does. */
+void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out);
+
+#endif

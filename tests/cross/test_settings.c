@@ -1,0 +1,167 @@
+/* ref/pipeline against OpenGL: scenes × settings × sizes, every buffer bit for bit.
+ *
+ * Prints a line of differing values per scene and setting, one number per size. The settings are
+ * the default, each single change of it, and the original's profile. PEEL_TEST_FULL=1: all sizes;
+ * without it the small one, and for the default the others but the largest. */
+#include "bits.h"
+#include "testing.h"
+
+#include "gl/gl_renderer.h"
+#include "scene/generate.h"
+#include "scene/gltf.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MODELS "/usr/share/assimp/models/glTF2/" /* Debian's assimp-testmodels */
+
+/* A built-in scene by name, or a file; masked: its blended materials are cut out instead. */
+typedef struct NamedScene {
+    const char *name, *file;
+    bool masked;
+} NamedScene;
+
+static const NamedScene scenes[] = {
+    {"teapot_hall", NULL, false},
+    {"teapot_hall_stress", NULL, false},
+    {"tutorial", NULL, false},
+    {"chain", NULL, false},
+    {"crossing_planes", NULL, false},
+    {"alpha_ladder", NULL, false},
+    {"BoxTextured", MODELS "BoxTextured-glTF/BoxTextured.gltf", false},
+    {"ClearCoatTest", MODELS "ClearCoat-glTF/ClearCoatTest.gltf", false},
+    {"ClearCoatTest, masked", MODELS "ClearCoat-glTF/ClearCoatTest.gltf", true},
+    {"boxTexcoords", MODELS "BoxTexcoords-glTF/boxTexcoords.gltf", false},
+};
+
+typedef struct Setting {
+    const char *name;
+    bool seed;
+    RenderDesc desc;
+} Setting;
+
+static const Setting settings[] = {
+    {"default", false, {0}},
+    {"depth d24", false, {.depth = FORMAT_D24}},
+    {"depth d16", false, {.depth = FORMAT_D16}},
+    {"accum rgba16f", false, {.accum = FORMAT_RGBA16F}},
+    {"accum rgba16", false, {.accum = FORMAT_RGBA16}},
+    {"accum rgba8", false, {.accum = FORMAT_RGBA8}},
+    {"gbuffer seed", false, {.gbuffer = GBUFFER_SEED}},
+    {"gbuffer compact", false, {.gbuffer = GBUFFER_COMPACT}},
+    {"position reconstruct", false, {.position = POSITION_RECONSTRUCT}},
+    {"cull seed", false, {.cull = CULL_SEED}},
+    {"cull none", false, {.cull = CULL_NONE}},
+    {"normals kept", false, {.normals = NORMALS_KEPT}},
+    {"back-light on", false, {.back_light = true}},
+    {"ggx stable", false, {.ggx = GGX_STABLE}},
+    {"depth-func lequal", false, {.depth_func = DEPTH_LEQUAL}},
+    {"depth-range zero-one", false, {.depth_range = DEPTH_RANGE_ZERO_ONE}},
+    {"depth-range reversed", false, {.depth_range = DEPTH_RANGE_REVERSED}},
+    {"peel-test raw", false, {.peel_test = PEEL_TEST_RAW}},
+    {"passes 2", false, {.passes = 2}},
+    {"profile seed", true, {0}},
+};
+
+static const int sizes[][2] = {{1, 1}, {33, 17}, {640, 480}, {1920, 1080}};
+
+enum {
+    SCENES = sizeof scenes / sizeof scenes[0],
+    SETTINGS = sizeof settings / sizeof settings[0],
+    SIZES = sizeof sizes / sizeof sizes[0],
+    SLICE_SIZE = 1, /* of every setting */
+    LIGHTS = 4
+};
+
+static uint64_t all_values, all_differing, comparisons;
+
+static void load(const NamedScene *from, Scene *out)
+{
+    Result result =
+        from->file ? gltf_load(from->file, out) : generate_find(from->name)->generate(out);
+    ck_assert_msg(result == RESULT_OK, "%s", result_message());
+    for (size_t i = 0; from->masked && i < out->material_count; i++)
+        if (out->materials[i].alpha_mode == ALPHA_BLEND)
+            out->materials[i].alpha_mode = ALPHA_MASK;
+}
+
+static bool is_wanted(int setting, int size)
+{
+    const char *full = getenv("PEEL_TEST_FULL");
+    if (full && strcmp(full, "1") == 0)
+        return true;
+    return size == SLICE_SIZE || (setting == 0 && size != SIZES - 1);
+}
+
+/* One line of the matrix; returns the differing values. */
+static uint64_t run_setting(const Scene *scene, const char *name, int number)
+{
+    const Setting *setting = &settings[number];
+    uint64_t values = 0, differing = 0;
+    Bits bits = {0};
+    char first[sizeof bits.difference] = "";
+    printf("%-22s %-21s", name, setting->name);
+    for (int size = 0; size < SIZES; size++) {
+        RenderDesc desc = setting->desc;
+        if (!is_wanted(number, size)) {
+            printf(" %9s", "-");
+            continue;
+        }
+        if (setting->seed)
+            render_desc_seed_profile(&desc);
+        desc.width = sizes[size][0];
+        desc.height = sizes[size][1];
+        desc.lights = LIGHTS;
+        bits_compare(scene, &desc, &bits);
+        printf(" %9llu", (unsigned long long)bits.differing);
+        fflush(stdout);
+        values += bits.values;
+        differing += bits.differing;
+        comparisons++;
+        if (bits.differing && !*first)
+            memcpy(first, bits.difference, sizeof first);
+    }
+    printf(" %6d %14llu  %s\n", bits.peels, (unsigned long long)values, first);
+    fflush(stdout);
+    all_values += values;
+    all_differing += differing;
+    return differing;
+}
+
+START_TEST(test_settings)
+{
+    bool fused;
+    ck_assert_msg(gl_driver_fuses(0, &fused) == RESULT_OK, "%s", result_message());
+    printf("differing values, --lights %d, --fma %s\n%-22s %-21s", LIGHTS, fused ? "on" : "off",
+           "scene", "setting");
+    for (int size = 0; size < SIZES; size++) {
+        char text[16];
+        snprintf(text, sizeof text, "%dx%d", sizes[size][0], sizes[size][1]);
+        printf(" %9s", text);
+    }
+    printf(" %6s %14s\n", "peels", "values");
+    for (int i = 0; i < SCENES; i++) {
+        Scene scene;
+        load(&scenes[i], &scene);
+        for (int setting = 0; setting < SETTINGS; setting++)
+            run_setting(&scene, scenes[i].name, setting);
+        scene_free(&scene);
+    }
+    printf("comparisons: %llu, values: %llu, differing: %llu\n", (unsigned long long)comparisons,
+           (unsigned long long)all_values, (unsigned long long)all_differing);
+    fflush(stdout);
+    ck_assert_uint_gt(all_values, 0);
+    ck_assert_uint_eq(all_differing, 0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("settings");
+    TCase *tcase = tcase_create("bits");
+    tcase_set_timeout(tcase, 0); /* CTest's */
+    tcase_add_test(tcase, test_settings);
+    suite_add_tcase(suite, tcase);
+    return testing_run(suite);
+}
