@@ -24,7 +24,8 @@ enum {
 
 static const struct argp_option command_options[] = {
     {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 0},
-    {"fma", KEY_FMA, "off", 0, "Have Mesa's software driver not fuse multiply-adds", 0},
+    {"fma", KEY_FMA, "on|off", 0,
+     "Whether Mesa's software driver fuses multiply-adds (default: as the processor can)", 0},
     {"json", KEY_JSON, "FILE", 0, "Write the table as JSON", 0},
     {"threads", KEY_THREADS, "N", 0, "Rasterizer threads of Mesa's software driver", 0},
     {0},
@@ -67,6 +68,27 @@ static const char *mode_name(FusesMode mode)
     return mode == FUSES_YES ? "fused" : mode == FUSES_NOT ? "unfused" : "neither";
 }
 
+static Result check_fma(FmaChoice fma, FusesMode mode)
+{
+    if ((fma == FMA_ON && mode == FUSES_NOT) || (fma == FMA_OFF && mode == FUSES_YES))
+        return result_fail(RESULT_NO_GL, "--fma %s: the GL driver here is %s",
+                           fma == FMA_ON ? "on" : "off", mode_name(mode));
+    return RESULT_OK;
+}
+
+static Result run_rules(const DriverCommand *command, const LabDriver *driver, GlLab *lab,
+                        DriverReport *report)
+{
+    Result result = check_fma(command->fma, driver->mode);
+    if (result != RESULT_OK)
+        return result;
+    PipelineLab model = pipeline_lab(driver->mode != FUSES_NOT);
+    result_warnings_enable(false); /* the table says more */
+    result = driver_run(&model.lab, lab_experiments(lab), gl_render, report);
+    result_warnings_enable(true);
+    return result;
+}
+
 static Result examine(const DriverCommand *command, DriverReport *report)
 {
     LabDriver driver;
@@ -77,10 +99,7 @@ static Result examine(const DriverCommand *command, DriverReport *report)
         result = lab_open(command->threads, &driver, &lab);
     if (result != RESULT_OK)
         return result;
-    PipelineLab model = pipeline_lab(driver.mode != FUSES_NOT);
-    result_warnings_enable(false); /* the table says more */
-    result = driver_run(&model.lab, lab_experiments(lab), gl_render, report);
-    result_warnings_enable(true);
+    result = run_rules(command, &driver, lab, report);
     lab_close(lab);
     if (result != RESULT_OK)
         return result;

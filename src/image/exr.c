@@ -137,11 +137,11 @@ Result exr_writer_open(const char *path, const ExrPart *parts, int part_count, E
 /* Unsigned integers of 1 or 2 bytes to the 4 that EXR has. */
 static void widen(const Image *image, int y, int rows, uint32_t *out)
 {
-    int bytes = format_info(image->format)->channel_bytes;
-    size_t count = (size_t)rows * (size_t)image->width * 4;
+    const FormatInfo *info = format_info(image->format);
+    size_t count = (size_t)rows * (size_t)image->width * (size_t)info->channels;
     const void *in = image_pixel(image, 0, y);
     for (size_t i = 0; i < count; i++)
-        out[i] = bytes == 1 ? ((const uint8_t *)in)[i] : ((const uint16_t *)in)[i];
+        out[i] = info->channel_bytes == 1 ? ((const uint8_t *)in)[i] : ((const uint16_t *)in)[i];
 }
 
 static void point_at(exr_encode_pipeline_t *pipeline, PixelFormat format, int width,

@@ -80,6 +80,9 @@ exits 0 'the same image' cmp egl.exr osmesa.exr
 exits 0 'help' "$peel" driver --help
 has 'help' '--json'
 
+exits 4 'a mode that the driver does not have' env GALLIUM_OVERRIDE_CPU_CAPS=sse4.1 \
+    "$peel" driver --fma on
+has 'a mode that the driver does not have' 'is unfused'
 exits 4 'a name' "$peel" driver --gl glx
 has 'a name' 'expected osmesa or egl'
 exits 4 'an argument' "$peel" driver tutorial
