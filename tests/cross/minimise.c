@@ -1,6 +1,7 @@
 #include "minimise.h"
 
 #include "base/memory.h"
+#include "frame/method.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -121,6 +122,10 @@ static bool keep_if_fails(Minimiser *m, RenderDesc simpler)
 static void reduce_settings(Minimiser *m)
 {
     DEFAULTED(opaque_blend);
+    DEFAULTED(method);
+    DEFAULTED(shading);
+    DEFAULTED(bias);
+    DEFAULTED(draw_order);
     DEFAULTED(gbuffer);
     DEFAULTED(position);
     DEFAULTED(depth_range);
@@ -229,6 +234,19 @@ void minimise_free(Minimal *minimal)
     *minimal = (Minimal){0};
 }
 
+/* Those that are seldom set. */
+static int more_options(const RenderDesc *desc, char *text, size_t size)
+{
+    char order[48] = "";
+    if (desc->draw_order == DRAW_ORDER_SHUFFLE)
+        snprintf(order, sizeof order, " --draw-order shuffle=%llu",
+                 (unsigned long long)desc->draw_seed);
+    return snprintf(text, size, " --method %s%s%s%s --bias %.9g", method_info(desc->method)->name,
+                    desc->shading == SHADING_PHONG ? " --shading phong" : "",
+                    desc->draw_order == DRAW_ORDER_REVERSE ? " --draw-order reverse" : "", order,
+                    (double)desc->bias);
+}
+
 void minimise_options(const RenderDesc *desc, char *text, size_t size)
 {
     static const char *const culls[] = {"gltf", "seed", "none"};
@@ -247,6 +265,8 @@ void minimise_options(const RenderDesc *desc, char *text, size_t size)
         desc->normals == NORMALS_KEPT ? "kept" : "faced",
         desc->ggx == GGX_STABLE ? "stable" : "source", desc->back_light ? "on" : "off",
         desc->unfused ? "off" : "on");
+    if (length > 0 && (size_t)length < size)
+        length += more_options(desc, text + length, size - (size_t)length);
     if (desc->passes > 0 && length > 0 && (size_t)length < size)
         length += snprintf(text + length, size - (size_t)length, " --passes %d", desc->passes);
     if (desc->lights != 0 && length > 0 && (size_t)length < size)

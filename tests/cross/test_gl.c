@@ -236,12 +236,14 @@ START_TEST(test_shader_errors_become_results)
     Context *context;
     ck_assert(context_open(0, &context) == RESULT_OK);
     GLuint program = 1;
-    ck_assert(program_build("broken", "", shader_fullscreen_vert, "void main() { x = 1; }",
-                            &program) == RESULT_NO_GL);
+    const char *broken = "void main() { x = 1; }";
+    const char *unlinked = "void other();\nvoid main() { other(); }";
+    ck_assert(program_build("broken", "", shader_fullscreen_vert, &broken, 1, &program) ==
+              RESULT_NO_GL);
     ck_assert_uint_eq(program, 0);
     ck_assert_ptr_nonnull(strstr(result_message(), "broken fragment shader"));
-    ck_assert(program_build("unlinked", "", "void main() {}",
-                            "void other();\nvoid main() { other(); }", &program) == RESULT_NO_GL);
+    ck_assert(program_build("unlinked", "", "void main() {}", &unlinked, 1, &program) ==
+              RESULT_NO_GL);
     context_close(context);
 }
 END_TEST

@@ -42,6 +42,8 @@ static RenderDesc random_desc(Random *random)
         desc.peel_test = (PeelTest)(random_bits(random) % 2);
         desc.cull = (CullMode)(random_bits(random) % 3);
         desc.normals = (NormalMode)(random_bits(random) % 2);
+        desc.shading = random_bits(random) % 8 ? SHADING_GGX : SHADING_PHONG;
+        desc.bias = random_bits(random) % 8 ? 0.0f : 0x1p-10f;
         desc.ggx = (GgxForm)(random_bits(random) % 2);
         desc.back_light = random_bits(random) % 2;
         desc.opaque_blend = (OpaqueBlend)(random_bits(random) % 2);

@@ -49,6 +49,12 @@ static void random_formats(Random *random, RenderDesc *desc)
     desc->ggx = (GgxForm)(random_bits(random) % 2);
     desc->back_light = random_bits(random) % 2;
     desc->opaque_blend = (OpaqueBlend)(random_bits(random) % 2);
+    desc->method = random_bits(random) % 4 ? METHOD_PEEL : METHOD_FORWARD;
+    desc->shading = random_bits(random) % 8 ? SHADING_GGX : SHADING_PHONG;
+    desc->bias =
+        random_bits(random) % 8 ? 0.0f : (float)ldexp(1.0, -(int)(random_bits(random) % 24));
+    desc->draw_order = (DrawOrder)(random_bits(random) % 3);
+    desc->draw_seed = random_bits(random) >> 1;
 }
 
 static RenderDesc random_desc(Random *random, SoupKind kind)

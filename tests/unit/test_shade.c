@@ -103,7 +103,8 @@ START_TEST(test_back_light)
         highlight(&random, &texel, &light);
         texel.material[1] = (float)random_unit(&random);
         View view = one_light(&light);
-        ShadeForm form = {.ggx = (GgxForm)(i & 1)}, back = {(GgxForm)(i & 1), true};
+        ShadeForm form = {.ggx = (GgxForm)(i & 1)}, back = form;
+        back.back_light = true;
         shade(&view, form, &texel, plain);
         shade(&view, back, &texel, lit);
         ck_assert_mem_eq(plain, lit, sizeof lit);
@@ -146,7 +147,8 @@ START_TEST(test_guards)
                        .material = {i / 5 & 16 ? 0.0f : 1.0f, 1, 1}};
         for (int form = 0; form < 4; form++) {
             float source[4];
-            shade(&view, (ShadeForm){(GgxForm)(form & 1), form > 1}, &texel, source);
+            shade(&view, (ShadeForm){.ggx = (GgxForm)(form & 1), .back_light = form > 1}, &texel,
+                  source);
             for (int k = 0; k < 3; k++)
                 ck_assert_msg(isfinite(source[k]) && source[k] >= 0, "case %d, form %d: %g", i,
                               form, (double)source[k]);

@@ -24,7 +24,7 @@ START_TEST(test_head_on)
         ViewLight light = {{0, 0, (float)(distance - 3)}, {1, 2, 4}, {1, 0.5f, 0.25f}};
         View view = {.light_count = 1, .lights = &light, .ambient = {0.25f, 0.25f, 0.5f}};
         MaterialSample m = material(roughness, metallic);
-        Surface surface = {{0, 0, -3}, {0, 0, 7}, m, false};
+        Surface surface = {{0, 0, -3}, {0, 0, 7}, m, false, false};
         double rgb[3], a2 = pow(roughness, 4);
         radiance_shade(&view, &surface, rgb);
         double attenuation = 1 / (1 + 0.5 * distance + 0.25 * distance * distance);
@@ -48,7 +48,7 @@ START_TEST(test_bisecting_normal)
     ViewLight light = {{5, 0, -3}, {2, 2, 2}, {0, 0, 1}};
     View view = {.light_count = 1, .lights = &light};
     MaterialSample m = material(0.5f, 0);
-    Surface surface = {{0, 0, -3}, {1, 0, 1}, m, false};
+    Surface surface = {{0, 0, -3}, {1, 0, 1}, m, false, false};
     double rgb[3], c = sqrt(0.5), k = 1.5 * 1.5 / 8, g = c / (c * (1 - k) + k);
     radiance_shade(&view, &surface, rgb);
     for (int i = 0; i < 3; i++) {
@@ -65,7 +65,7 @@ START_TEST(test_unlit)
 {
     ViewLight behind = {{0, 0, -9}, {100, 100, 100}, {1, 0, 0}};
     MaterialSample m = material(0.5f, 0);
-    Surface surface = {{0, 0, -3}, {0, 0, 1}, m, false};
+    Surface surface = {{0, 0, -3}, {0, 0, 1}, m, false, false};
     for (size_t count = 0; count < 2; count++) {
         View view = {.light_count = count, .lights = &behind, .ambient = {1, 1, 2}};
         double rgb[3];
@@ -86,7 +86,7 @@ START_TEST(test_back_light)
     View view_behind = {.light_count = 1, .lights = &behind},
          view_front = {.light_count = 1, .lights = &front};
     MaterialSample m = material(0.4f, 1), rough = material(0.4f, 0);
-    Surface surface = {{0, 0, -3}, {0, 0, 1}, m, true};
+    Surface surface = {{0, 0, -3}, {0, 0, 1}, m, true, false};
     double back[3], ahead[3], without[3];
     radiance_shade(&view_behind, &surface, back);
     radiance_shade(&view_front, &surface, ahead);
@@ -99,7 +99,7 @@ START_TEST(test_back_light)
     ck_assert_mem_eq(without, ahead, sizeof ahead);
     radiance_shade(&view_behind, &surface, without);
     ck_assert_double_eq(without[0], 0.0);
-    surface = (Surface){{0, 0, -3}, {0, 0, 1}, rough, true};
+    surface = (Surface){{0, 0, -3}, {0, 0, 1}, rough, true, false};
     radiance_shade(&view_behind, &surface, back);
     radiance_shade(&view_front, &surface, ahead);
     const double L[3] = {1.5 / sqrt(3.5), 0.5 / sqrt(3.5), 1 / sqrt(3.5)};
@@ -120,7 +120,7 @@ START_TEST(test_guards)
         ViewLight light = {{0, 0, i & 1 ? -3 : 0}, {1, 1, 1}, {0, 0, 1}};
         View view = {.light_count = 1, .lights = &light};
         MaterialSample m = material(i & 2 ? 0.0f : 1.0f, 0);
-        Surface surface = {{0, 0, i & 4 ? 0 : -3}, {0, 0, i & 8 ? 0 : 1}, m, false};
+        Surface surface = {{0, 0, i & 4 ? 0 : -3}, {0, 0, i & 8 ? 0 : 1}, m, false, false};
         double rgb[3];
         radiance_shade(&view, &surface, rgb);
         for (int k = 0; k < 3; k++)
@@ -130,8 +130,8 @@ START_TEST(test_guards)
     ViewLight light = {{1, 0, 0}, {1, 1, 1}, {0, 0, 1}};
     View view = {.light_count = 1, .lights = &light};
     MaterialSample smooth = material(0, 0), least = material(SHADING_ROUGHNESS_MIN, 0);
-    Surface a = {{0, 0, -3}, {0.1, 0, 1}, smooth, false},
-            b = {{0, 0, -3}, {0.1, 0, 1}, least, false};
+    Surface a = {{0, 0, -3}, {0.1, 0, 1}, smooth, false, false},
+            b = {{0, 0, -3}, {0.1, 0, 1}, least, false, false};
     double rgb_a[3], rgb_b[3];
     radiance_shade(&view, &a, rgb_a);
     radiance_shade(&view, &b, rgb_b);
