@@ -86,7 +86,7 @@ Result passes_program(const Passes *passes, const char *name, const char *define
                       const PassesSource *source, GLuint *out)
 {
     char text[1024];
-    const char *parts[5];
+    const char *parts[6];
     int count = 0;
     write_defines(passes, defines, text, sizeof text);
     if (source->surface)
@@ -95,6 +95,8 @@ Result passes_program(const Passes *passes, const char *name, const char *define
         parts[count++] = shader_peel_test;
     if (source->octahedral)
         parts[count++] = shader_octahedral;
+    if (source->gbuffer)
+        parts[count++] = shader_gbuffer;
     if (source->shade)
         parts[count++] = shader_shade;
     parts[count++] = source->main;
@@ -112,6 +114,7 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
     const PassesSource source = {.surface = true,
                                  .peel_test = *defines != '\0',
                                  .octahedral = true,
+                                 .gbuffer = true,
                                  .main = shader_geometry_frag};
     return passes_program(passes, name, defines, &source, out);
 }
@@ -139,15 +142,20 @@ static Result build_programs(Passes *passes)
 
 /* ---- the frame ---- */
 
+void passes_depth_test(const RenderDesc *desc, DepthFunc func)
+{
+    if (desc->depth_range == DEPTH_RANGE_REVERSED)
+        gl.DepthFunc(func == DEPTH_LEQUAL ? GL_GEQUAL : GL_GREATER);
+    else
+        gl.DepthFunc(func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
+}
+
 static void set_state(const Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
     gl.ProgramUniform3fv(passes->resolve, UNIFORM_BACKGROUND, 1, passes->view->background);
     gl.Viewport(0, 0, desc->width, desc->height);
-    if (desc->depth_range == DEPTH_RANGE_REVERSED)
-        gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_GEQUAL : GL_GREATER);
-    else
-        gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
+    passes_depth_test(desc, desc->depth_func);
     gl.ClipControl(GL_LOWER_LEFT,
                    desc->depth_range == DEPTH_RANGE_GL ? GL_NEGATIVE_ONE_TO_ONE : GL_ZERO_TO_ONE);
     gl.BindVertexArray(passes->meshes.vertex_array);

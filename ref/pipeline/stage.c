@@ -199,6 +199,20 @@ void stage_count_drawn(const GBuffer *layer, const Image *previous_depth, uint64
     }
 }
 
+void stage_count_remaining(Stage *stage, uint32_t tile)
+{
+    const Pass *pass = stage->pass;
+    PixelRect rect = pass_tile_rect(pass, tile);
+    for (int y = rect.y0; y <= rect.y1; y++)
+        for (int x = rect.x0; x <= rect.x1; x++) {
+            float accum[4];
+            format_fetch(stage->accum.format,
+                         image_pixel(&stage->accum, x, pass->view.height - 1 - y), accum);
+            pass_count_remaining(&stage->tile_counts[tile],
+                                 stage->remaining[stage_pixel(pass, x, y)], accum[3]);
+        }
+}
+
 /* ---- memory ---- */
 
 uint64_t stage_gbuffer_bytes(const Pass *pass)

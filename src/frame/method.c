@@ -6,6 +6,11 @@ static const MethodInfo methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {METHOD_PEEL, "peel",
                      "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
                      "deferred depth peeling, front to back", true, true},
+    [METHOD_PEEL_ID] = {METHOD_PEEL_ID, "peel-id",
+                        "Everitt, \"Interactive Order-Independent Transparency\", 2001; the order "
+                        "by primitive is ours",
+                        "deferred depth peeling by depth and primitive: keeps coplanar layers",
+                        true, true},
 };
 
 const MethodInfo *method_info(MethodId id)
