@@ -34,7 +34,7 @@ typedef struct PeelId {
 
 static Result build_programs(PeelId *state)
 {
-    static const char *const next[2] = {"", "#define NEXT_PEEL\n"};
+    static const char *const next[2] = {"", "#define AFTER_LAYER\n"};
     const Passes *passes = state->passes;
     const char *order = passes->desc->depth_func == DEPTH_LEQUAL ? "#define GREATER_FIRST\n" : "";
     PassesSource source = {.surface = true, .peel_test = true, .main = shader_peel_id_frag};

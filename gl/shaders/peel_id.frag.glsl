@@ -4,7 +4,7 @@
 // PASS_DEPTH      the depth of the first fragment after the previous layer
 // PASS_SELECT     of the fragments at that depth, the first primitive
 // PASS_GBUFFER    that fragment into the G-buffer
-// NEXT_PEEL       there is a previous layer
+// AFTER_LAYER     there is a previous layer
 // GREATER_FIRST   of equal depths, the greater id is in front
 //
 // A rank is 0 where there is no fragment, and greater in front.
@@ -29,7 +29,7 @@ uint rank()
 #endif
 }
 
-#ifdef NEXT_PEEL
+#ifdef AFTER_LAYER
 bool comes_after_previous()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -68,7 +68,7 @@ void main()
 {
     if (is_culled() || is_peeled_or_hidden())
         discard;
-#ifdef NEXT_PEEL
+#ifdef AFTER_LAYER
     if (!comes_after_previous())
         discard;
 #endif

@@ -20,7 +20,8 @@ typedef enum ShadingModel {
     SHADING_GGX = 0,
     SHADING_PHONG
 } ShadingModel;
-/* The order in which instances are drawn; primitive ids stay those of the scene. */
+/* The order in which instances are drawn; primitive ids stay those of the scene, and so does the
+ * order of opaque instances among themselves. */
 typedef enum DrawOrder {
     DRAW_ORDER_SCENE = 0,
     DRAW_ORDER_REVERSE,

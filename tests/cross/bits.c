@@ -38,7 +38,8 @@ static void add_buffers(const Against *against, const RenderDesc *desc, Bits *ou
 static void add_frames(const Frame *ref, const Frame *driver, Bits *out)
 {
     size_t pixels = (size_t)ref->final.width * (size_t)ref->final.height;
-    bool same = ref->peels == driver->peels && ref->layers.repeated == driver->layers.repeated &&
+    bool same = ref->peels == driver->peels && ref->geometry_passes == driver->geometry_passes &&
+                ref->layers.repeated == driver->layers.repeated &&
                 memcmp(ref->final.pixels, driver->final.pixels, pixels * 16) == 0;
     out->differing += !same;
     if (!same && !*out->difference)
@@ -52,7 +53,8 @@ static void add_frames(const Frame *ref, const Frame *driver, Bits *out)
 static size_t expected_buffers(const RenderDesc *desc, int peels)
 {
     size_t stored = render_desc_layout(desc).position == FORMAT_NONE ? 4 : 5;
-    return stored + (stored + 1) * (size_t)peels + 2;
+    size_t ids = desc->method == METHOD_PEEL_ID;
+    return stored + (stored + ids + 1) * (size_t)peels + 2;
 }
 
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)
