@@ -52,6 +52,7 @@
     X(FINISH, Finish)                                                                              \
     X(GETERROR, GetError)                                                                          \
     X(GETINTEGERV, GetIntegerv)                                                                    \
+    X(GETNAMEDBUFFERSUBDATA, GetNamedBufferSubData)                                                \
     X(GETNAMEDFRAMEBUFFERPARAMETERIV, GetNamedFramebufferParameteriv)                              \
     X(GETPROGRAMINFOLOG, GetProgramInfoLog)                                                        \
     X(GETPROGRAMIV, GetProgramiv)                                                                  \

@@ -38,6 +38,7 @@ static void describe_driver(Frame *out)
 static Result (*const methods[METHOD_COUNT])(Passes *passes, Frame *out) = {
     [METHOD_PEEL] = gl_peel,
     [METHOD_PEEL_ID] = gl_peel_id,
+    [METHOD_LINKED_LIST] = gl_linked_list,
 };
 
 /* Not inlined: see op_enter. */

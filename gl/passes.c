@@ -303,21 +303,31 @@ void passes_clear_layer(const Passes *passes, const Layer *layer)
 
 /* ---- the passes that methods share ---- */
 
-Result passes_opaque(Passes *passes)
+void passes_begin_opaque(const Passes *passes)
 {
     static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     const Targets *targets = &passes->targets;
-    uint64_t samples;
     gl.ClearNamedFramebufferfv(targets->plain_buffer, GL_COLOR, 0, no_color_all_transmitted);
     passes_clear_layer(passes, &targets->opaque);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->opaque.buffer);
-    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, &samples);
-    if (result == RESULT_OK)
-        result = targets_copy_code(targets, targets->opaque.buffer, targets->opaque_code);
+}
+
+Result passes_end_opaque(Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    Result result = targets_copy_code(targets, targets->opaque.buffer, targets->opaque_code);
     if (result == RESULT_OK && passes->trace)
         result = readback_trace_gbuffer(targets, targets->opaque.buffer, -1, passes->trace,
                                         passes->pixels);
     return result;
+}
+
+Result passes_opaque(Passes *passes)
+{
+    uint64_t samples;
+    passes_begin_opaque(passes);
+    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, &samples);
+    return result == RESULT_OK ? passes_end_opaque(passes) : result;
 }
 
 void passes_blend_under(void)

@@ -74,6 +74,9 @@ void passes_clear_layer(const Passes *passes, const Layer *layer);
 
 /* Clears the opaque G-buffer and the accumulation, draws the opaque list, traces the G-buffer. */
 Result passes_opaque(Passes *passes);
+/* What it does before it draws, with the opaque framebuffer bound, and after. */
+void passes_begin_opaque(const Passes *passes);
+Result passes_end_opaque(Passes *passes);
 /* Shades a peel's G-buffer and blends it under the accumulation. */
 void passes_light_layer(const Passes *passes, const Layer *layer);
 /* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says;

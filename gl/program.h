@@ -20,6 +20,7 @@ extern const char shader_fullscreen_vert[];
 extern const char shader_lighting_frag[];
 extern const char shader_resolve_frag[];
 extern const char shader_peel_id_frag[];
+extern const char shader_linked_list_frag[];
 extern const char shader_fuses_vert[];
 extern const char shader_fuses_frag[];
 extern const char shader_experiment_vert[];

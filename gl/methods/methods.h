@@ -8,5 +8,6 @@
  * counts in out->layers. With a trace, every buffer of it but "display" is read back. */
 Result gl_peel(Passes *passes, Frame *out);
 Result gl_peel_id(Passes *passes, Frame *out);
+Result gl_linked_list(Passes *passes, Frame *out);
 
 #endif

@@ -55,25 +55,34 @@ float stored_depth(float window, out uint code)
     return z;
 }
 
+// Of a transparent fragment at window depth `window`.
+bool is_hidden(float window)
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uint code;
+    precise float z = stored_depth(window, code);
+#if defined(OPAQUE_CODE)
+    return AT_OR_BEHIND(code, texelFetch(opaque_depth, pixel, 0).r);
+#elif defined(TEST_RAW)
+    return AT_OR_BEHIND(window, texelFetch(opaque_depth, pixel, 0).r);
+#else
+    return AT_OR_BEHIND(z, texelFetch(opaque_depth, pixel, 0).r);
+#endif
+}
+
 bool is_peeled_or_hidden()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     precise float z = gl_FragCoord.z;
+    if (is_hidden(z))
+        return true;
 #ifndef TEST_RAW
     uint code;
     z = stored_depth(z, code);
-#ifdef OPAQUE_CODE
-    if (AT_OR_BEHIND(code, texelFetch(opaque_depth, pixel, 0).r))
-        return true;
-#endif
 #if defined(NEXT_PEEL) && defined(PREVIOUS_CODE)
     if (AT_OR_BEHIND(texelFetch(previous_depth, pixel, 0).r, code))
         return true;
 #endif
-#endif
-#ifndef OPAQUE_CODE
-    if (AT_OR_BEHIND(z, texelFetch(opaque_depth, pixel, 0).r))
-        return true;
 #endif
 #if defined(NEXT_PEEL) && !defined(PREVIOUS_CODE)
     precise float previous = texelFetch(previous_depth, pixel, 0).r;

@@ -14,6 +14,7 @@ static const struct {
 } methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {peel_render, tile_render},
     [METHOD_PEEL_ID] = {peel_id_render, NULL},
+    [METHOD_LINKED_LIST] = {linked_list_render, NULL},
 };
 
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)

@@ -11,6 +11,13 @@ static const MethodInfo methods[METHOD_COUNT] = {
                         "by primitive is ours",
                         "deferred depth peeling by depth and primitive: keeps coplanar layers",
                         true, true},
+    [METHOD_LINKED_LIST] =
+        {METHOD_LINKED_LIST, "linked-list",
+         "Breust, \"Deep Deferred Renderer\"; Yang et al., \"Real-Time Concurrent "
+         "Linked List Construction on the GPU\", 2010",
+         "deep deferred: one geometry pass into per-pixel lists of G-buffer "
+         "nodes, sorted by depth and primitive",
+         true, true},
 };
 
 const MethodInfo *method_info(MethodId id)

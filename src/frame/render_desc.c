@@ -45,7 +45,8 @@ GBufferLayout render_desc_layout(const RenderDesc *desc)
         [GBUFFER_SEED] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA8, FORMAT_RGBA8},
         [GBUFFER_COMPACT] = {FORMAT_RG16, FORMAT_NONE, FORMAT_RGBA8, FORMAT_RGBA8},
     };
-    GBufferLayout layout = layouts[desc->gbuffer];
+    GBufferLayout layout =
+        layouts[desc->method == METHOD_LINKED_LIST ? GBUFFER_COMPACT : desc->gbuffer];
     if (desc->position == POSITION_RECONSTRUCT)
         layout.position = FORMAT_NONE;
     return layout;

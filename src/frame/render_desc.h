@@ -12,6 +12,7 @@
 typedef enum MethodId {
     METHOD_PEEL = 0,
     METHOD_PEEL_ID,
+    METHOD_LINKED_LIST,
     METHOD_COUNT
 } MethodId;
 /* How a surface is lit: the original's point lights, or one directional light as in the WebGPU
@@ -168,6 +169,7 @@ typedef struct GBufferLayout {
 
 const char *gbuffer_name(GBufferFormat format); /* "full", "seed", "compact"; static */
 
+/* METHOD_LINKED_LIST has a compact one, whatever is asked for. */
 GBufferLayout render_desc_layout(const RenderDesc *desc);
 
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,
