@@ -124,14 +124,16 @@ static Result build_programs(Passes *passes)
     const RenderDesc *desc = passes->desc;
     const PassesSource lighting = {.octahedral = true, .shade = true, .main = shader_lighting_frag};
     const PassesSource resolve = {.main = shader_resolve_frag};
+    const char *edges = render_desc_edges(desc) ? "#define EDGES\n" : "";
+    char peel[48];
+    snprintf(peel, sizeof peel, "%s%s", edges, desc->back_light ? "#define BACK_LIGHT\n" : "");
     Result result =
         passes_geometry_program(passes, "opaque geometry", "", &passes->opaque_geometry);
     if (result == RESULT_OK)
-        result = passes_program(passes, "opaque lighting", "", &lighting, &passes->opaque_lighting);
-    if (result == RESULT_OK)
         result =
-            passes_program(passes, "peel lighting", desc->back_light ? "#define BACK_LIGHT\n" : "",
-                           &lighting, &passes->peel_lighting);
+            passes_program(passes, "opaque lighting", edges, &lighting, &passes->opaque_lighting);
+    if (result == RESULT_OK)
+        result = passes_program(passes, "peel lighting", peel, &lighting, &passes->peel_lighting);
     if (result == RESULT_OK)
         result =
             passes_program(passes, "resolve",

@@ -167,6 +167,12 @@ typedef struct GBufferLayout {
     PixelFormat normal, position, diffuse, material;
 } GBufferLayout;
 
+/* Whether edges are drawn: desc->post has a meaning for linked lists only. */
+static inline bool render_desc_edges(const RenderDesc *desc)
+{
+    return desc->post == POST_EDGES && desc->method == METHOD_LINKED_LIST;
+}
+
 const char *gbuffer_name(GBufferFormat format); /* "full", "seed", "compact"; static */
 
 /* METHOD_LINKED_LIST has a compact one, whatever is asked for. */

@@ -85,6 +85,13 @@
  *   A light in front has m = 0 and the same bits as without. N is the stored one: where it is
  *   turned from the viewer (NORMALS_KEPT), NV = 0 and there is no lobe, as without.
  *
+ * With POST_EDGES (METHOD_LINKED_LIST), outlines in every layer and of the opaque surfaces: a
+ * fragment of layer K is on an edge where one of the 4 neighbours of its pixel that are inside the
+ * image has no fragment in layer K, or one with normal N' and distance z' such that
+ *     dot(N, N') < SHADING_EDGE_DOT  or  |z − z'| > SHADING_EDGE_DEPTH·z
+ * from the stored values, z = −P.z. A pixel without a fragment is one whose stored material has a
+ * fourth channel of 0. There c = 0: source = (0, 0, 0, alpha).
+ *
  * Under-blend into the accumulation buffer, cleared to (0, 0, 0, 1):
  *   rgb = source.rgb·dst.a + dst.rgb;  a = source.a·0 + dst.a·(1 − source.a)
  *   the opaque pass with OPAQUE_BLEND_SEED: all four channels source·dst.a + dst
@@ -101,6 +108,8 @@
 #define SHADING_ROUGHNESS_MIN 0.045f
 #define SHADING_DISTANCE2_MIN 1e-4f
 #define SHADING_SPECULAR_BIAS 1e-4f
+#define SHADING_EDGE_DOT      0.8f
+#define SHADING_EDGE_DEPTH    0.05f
 #define SHADING_PI            3.14159265f
 #define SHADING_DISPLAY_POWER 0.45454547f /* 1/2.2 */
 

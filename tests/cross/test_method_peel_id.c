@@ -33,7 +33,8 @@ static void make_soup(uint64_t seed, RenderDesc *desc, Soup *soup)
     ok(scene_validate(&soup->scene));
 }
 
-/* ---- ref against gl --------------------------------------------------------------------------- */
+/* ---- ref against gl ---------------------------------------------------------------------------
+ */
 
 static const RenderDesc variants[] = {
     {.passes = 0},
@@ -75,7 +76,8 @@ START_TEST(test_bits)
 }
 END_TEST
 
-/* ---- promises --------------------------------------------------------------------------------- */
+/* ---- promises ---------------------------------------------------------------------------------
+ */
 
 static void render(Renderer renderer, const Scene *scene, const RenderDesc *desc, TraceSink *sink,
                    Frame *out)
