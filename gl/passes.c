@@ -54,6 +54,8 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
         {passes->lights.storage, "LIGHTS_STORAGE"},
         {desc->accum == FORMAT_RGBA8, "ACCUM_8"},
         {desc->ggx == GGX_STABLE, "GGX_STABLE"},
+        {desc->shading == SHADING_PHONG, "PHONG"},
+        {targets->lit && targets->color_format[GBUFFER_DIFFUSE] == FORMAT_RGBA8, "CLAMP_COLOR"},
     };
     for (size_t i = 0; i < sizeof switches / sizeof *switches; i++)
         if (switches[i].on)
@@ -75,7 +77,8 @@ static void set_constants(const Passes *passes, const PassesSource *source, GLui
         gl.ProgramUniformMatrix4fv(program, UNIFORM_PROJECTION, 1, GL_FALSE, view->projection);
     if (!source->shade)
         return;
-    gl.ProgramUniform3fv(program, UNIFORM_AMBIENT, 1, view->ambient);
+    if (passes->desc->shading != SHADING_PHONG)
+        gl.ProgramUniform3fv(program, UNIFORM_AMBIENT, 1, view->ambient);
     if (source->surface || passes->targets.color_format[GBUFFER_POSITION] != FORMAT_NONE)
         return;
     gl.ProgramUniform3fv(program, UNIFORM_DEPTH_TO_Z, 1, depth_to_z);
@@ -111,18 +114,25 @@ Result passes_program(const Passes *passes, const char *name, const char *define
 Result passes_geometry_program(const Passes *passes, const char *name, const char *defines,
                                GLuint *out)
 {
+    bool transparent = *defines != '\0', forward = passes->desc->method == METHOD_FORWARD;
     const PassesSource source = {.surface = true,
-                                 .peel_test = *defines != '\0',
-                                 .octahedral = true,
-                                 .gbuffer = true,
-                                 .main = shader_geometry_frag};
-    return passes_program(passes, name, defines, &source, out);
+                                 .peel_test = transparent,
+                                 .octahedral = !forward,
+                                 .gbuffer = !forward,
+                                 .shade = forward,
+                                 .main = forward ? shader_forward_frag : shader_geometry_frag};
+    char text[256];
+    snprintf(text, sizeof text, "%s%s", defines,
+             forward && transparent && passes->desc->back_light ? "#define BACK_LIGHT\n" : "");
+    return passes_program(passes, name, text, &source, out);
 }
 
 static Result build_programs(Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
-    const PassesSource lighting = {.octahedral = true, .shade = true, .main = shader_lighting_frag};
+    const PassesSource deferred = {.octahedral = true, .shade = true, .main = shader_lighting_frag};
+    const PassesSource composed = {.main = shader_compose_frag};
+    const PassesSource lighting = desc->method == METHOD_FORWARD ? composed : deferred;
     const PassesSource resolve = {.main = shader_resolve_frag};
     const char *edges = render_desc_edges(desc) ? "#define EDGES\n" : "";
     char peel[48];

@@ -16,6 +16,8 @@ extern const char shader_peel_test[];
 extern const char shader_octahedral[];
 extern const char shader_gbuffer[];
 extern const char shader_shade[];
+extern const char shader_forward_frag[];
+extern const char shader_compose_frag[];
 extern const char shader_fullscreen_vert[];
 extern const char shader_lighting_frag[];
 extern const char shader_resolve_frag[];

@@ -2,6 +2,7 @@
 
 #include "formats.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static void swap_rows(unsigned char *a, unsigned char *b, size_t bytes)
@@ -50,21 +51,18 @@ void readback_depth(const Targets *targets, GLuint framebuffer, ReadbackRows row
 static Result put(const Targets *targets, int peel, const char *what, PixelFormat format,
                   TraceSink *trace, const void *pixels)
 {
-    static const char *const opaque_names[] = {"opaque.depth", "opaque.normal", "opaque.position",
-                                               "opaque.diffuse", "opaque.material"};
+    char name[48];
     if (peel >= 0)
         return trace_put_peel(trace, peel, what, format, targets->width, targets->height, pixels);
-    for (size_t i = 0; i < sizeof opaque_names / sizeof *opaque_names; i++)
-        if (!strcmp(opaque_names[i] + strlen("opaque."), what))
-            return trace_put(trace, opaque_names[i], 0, format, targets->width, targets->height,
-                             pixels);
-    return result_fail(RESULT_INTERNAL, "trace: no opaque buffer is called %s", what);
+    snprintf(name, sizeof name, "opaque.%s", what);
+    return trace_put(trace, name, 0, format, targets->width, targets->height, pixels);
 }
 
 Result readback_trace_gbuffer(const Targets *targets, GLuint framebuffer, int peel,
                               TraceSink *trace, void *scratch)
 {
-    static const char *const names[GBUFFER_TARGETS] = {"normal", "position", "diffuse", "material"};
+    const char *const names[GBUFFER_TARGETS] = {"normal", "position",
+                                                targets->lit ? "color" : "diffuse", "material"};
     readback_depth(targets, framebuffer, READBACK_TOP_DOWN, scratch);
     Result result = put(targets, peel, "depth", targets->depth_format, trace, scratch);
     for (int i = 0; i < GBUFFER_TARGETS && result == RESULT_OK; i++) {

@@ -12,6 +12,7 @@ static void choose_formats(const RenderDesc *desc, Targets *out)
     GBufferLayout layout = render_desc_layout(desc);
     out->depth_format = render_desc_depth(desc);
     out->accum_format = desc->accum;
+    out->lit = desc->method == METHOD_FORWARD;
     out->color_format[GBUFFER_NORMAL] = layout.normal;
     out->color_format[GBUFFER_POSITION] = layout.position;
     out->color_format[GBUFFER_DIFFUSE] = layout.diffuse;

@@ -26,6 +26,7 @@ typedef struct Targets {
     PixelFormat color_format[GBUFFER_TARGETS]; /* FORMAT_NONE: not stored */
     int attachment[GBUFFER_TARGETS];           /* its draw buffer and shader output; −1: none */
     int color_count;                           /* of those stored */
+    bool lit;                                  /* diffuse holds lit colours (METHOD_FORWARD) */
     Layer opaque;
     GLuint opaque_code; /* see targets_needs_code; 0 where it is not needed */
     GLuint accum, final, display;

@@ -9,5 +9,6 @@
 Result gl_peel(Passes *passes, Frame *out);
 Result gl_peel_id(Passes *passes, Frame *out);
 Result gl_linked_list(Passes *passes, Frame *out);
+Result gl_forward(Passes *passes, Frame *out);
 
 #endif

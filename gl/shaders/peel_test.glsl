@@ -34,23 +34,23 @@ layout(binding = 0) uniform sampler2D previous_depth;
 
 // A window depth as the depth buffer stores it, NaN as 1: what a fetch of it gives, and the stored
 // integer, or bits, whose order is the depth's.
-float stored_depth(float window, out uint code)
+float stored_depth(float window, out uint key)
 {
     precise float z = window;
     z = z < 1.0 ? z : 1.0;
     z = z > 0.0 ? z : 0.0;
-    code = floatBitsToUint(z);
+    key = floatBitsToUint(z);
 #ifdef DEPTH_24
     precise float scaled = z * 16777215.0;
-    precise float rounded = roundEven(scaled);
-    code = uint(rounded);
-    z = rounded * (1.0 / 16777215.0);
+    precise float code = roundEven(scaled);
+    key = uint(code);
+    z = code * (1.0 / 16777215.0);
 #endif
 #ifdef DEPTH_16
     precise float scaled = z * (65535.0 / 65536.0);
     precise float shifted = scaled + 128.0; // the low bits of the mantissa are the code
-    code = floatBitsToUint(shifted) & 0xffffu;
-    z = float(code) * (1.0 / 65535.0);
+    key = floatBitsToUint(shifted) & 0xffffu;
+    z = float(key) * (1.0 / 65535.0);
 #endif
     return z;
 }

@@ -1,6 +1,7 @@
 // The light that a surface sends to the eye, premultiplied. The formula and its order of
 // operations: frame/shading.h.
 //
+// PHONG            one directional light instead
 // LIGHT_COUNT      number of lights
 // LIGHTS_STORAGE   they do not fit a uniform block
 // GGX_STABLE       the distribution without cancellation
@@ -24,6 +25,23 @@ layout(std140, binding = 0) uniform Lights
 };
 #endif
 
+#ifdef PHONG
+vec4 shade(vec3 N, vec3 P, vec4 diffuse_alpha, vec3 material)
+{
+    const vec3 L = vec3(PHONG_LIGHT_X, PHONG_LIGHT_Y, PHONG_LIGHT_Z);
+    precise float NL = dot(N, L);
+    precise float reflected_z = 2.0 * NL * N.z - L.z;
+    precise float x = max(reflected_z, 0.0);
+    precise float x2 = x * x;
+    precise float x4 = x2 * x2;
+    precise float x8 = x4 * x4;
+    precise float x20 = x8 * x8 * x4;
+    precise vec3 I = vec3(PHONG_AMBIENT_R, PHONG_AMBIENT_GB, PHONG_AMBIENT_GB);
+    precise vec3 color = I + max(NL, 0.0) * diffuse_alpha.rgb + x20;
+    precise vec3 premultiplied = color * diffuse_alpha.a;
+    return vec4(premultiplied, diffuse_alpha.a);
+}
+#else
 // N: normal, P: position in view space; material: roughness, metallic, occlusion.
 vec4 shade(vec3 N, vec3 P, vec4 diffuse_alpha, vec3 material)
 {
@@ -90,3 +108,4 @@ vec4 shade(vec3 N, vec3 P, vec4 diffuse_alpha, vec3 material)
     precise vec3 premultiplied = color * diffuse_alpha.a;
     return vec4(premultiplied, diffuse_alpha.a);
 }
+#endif

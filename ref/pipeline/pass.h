@@ -49,7 +49,7 @@ void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out);
 /* Of the lighting pass of a peel, or of the opaque surfaces. */
 static inline ShadeForm pass_shade_form(const Pass *pass, bool transparent)
 {
-    return (ShadeForm){pass->desc->ggx, pass->desc->back_light && transparent};
+    return (ShadeForm){pass->desc->shading, pass->desc->ggx, pass->desc->back_light && transparent};
 }
 
 /* A fragment's depth as computed (gl_FragCoord.z) and as stored (depth_key). */

@@ -15,6 +15,7 @@ static const struct {
     [METHOD_PEEL] = {peel_render, tile_render},
     [METHOD_PEEL_ID] = {peel_id_render, NULL},
     [METHOD_LINKED_LIST] = {linked_list_render, NULL},
+    [METHOD_FORWARD] = {forward_render, NULL},
 };
 
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)

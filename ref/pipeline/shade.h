@@ -10,6 +10,7 @@
 
 /* Which of the formula's variants a lighting pass uses. */
 typedef struct ShadeForm {
+    ShadingModel model;
     GgxForm ggx;
     bool back_light;
 } ShadeForm;

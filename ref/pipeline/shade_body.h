@@ -139,9 +139,35 @@ static inline void shade_light(const ShadeForm *form, const Surface *surface,
     }
 }
 
+static inline void shade_phong(ShadeBatch *batch)
+{
+    const Lanes zero = lanes_all(0.0f), two = lanes_all(2.0f);
+    const Lanes light[3] = {lanes_all(SHADING_PHONG_LIGHT_X), lanes_all(SHADING_PHONG_LIGHT_Y),
+                            lanes_all(SHADING_PHONG_LIGHT_Z)};
+    Lanes normal[3];
+    for (int i = 0; i < 3; i++)
+        normal[i] = lanes_load(batch->normal[i]);
+    Lanes n_dot_l = lanes_dot3(normal, light);
+    Lanes reflected_z = lanes_sub(lanes_mul(lanes_mul(two, n_dot_l), normal[2]), light[2]);
+    Lanes x = lanes_max(reflected_z, zero);
+    Lanes x2 = lanes_mul(x, x), x4 = lanes_mul(x2, x2), x8 = lanes_mul(x4, x4);
+    Lanes x20 = lanes_mul(lanes_mul(x8, x8), x4);
+    Lanes lit = lanes_max(n_dot_l, zero), alpha = lanes_load(batch->diffuse[3]);
+    for (int i = 0; i < 3; i++) {
+        Lanes ambient = lanes_all(i == 0 ? SHADING_PHONG_AMBIENT_R : SHADING_PHONG_AMBIENT_GB);
+        Lanes c = lanes_add(ambient, lanes_mul(lit, lanes_load(batch->diffuse[i])));
+        lanes_store(batch->source[i], lanes_mul(lanes_add(c, x20), alpha));
+    }
+    lanes_store(batch->source[3], alpha);
+}
+
 /* Fills batch->source. Flushing mode. */
 static inline void shade_batch(const View *view, const ShadeForm *form, ShadeBatch *batch)
 {
+    if (form->model == SHADING_PHONG) {
+        shade_phong(batch);
+        return;
+    }
     Surface surface;
     shade_surface(batch, &surface);
     Lanes sum[3] = {lanes_all(0.0f), lanes_all(0.0f), lanes_all(0.0f)};

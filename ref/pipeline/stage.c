@@ -10,6 +10,16 @@
 
 /* ---- geometry ---- */
 
+/* Forward: the lit, premultiplied colour takes the place of the surface's own. */
+static void light_texel(const StageVisit *visit, Texel *texel)
+{
+    const Stage *stage = visit->stage;
+    ShadeForm form = pass_shade_form(stage->pass, visit->target != &stage->opaque);
+    float color[4] = {0.0f, 0.0f, 0.0f, texel->diffuse[3]};
+    shade_pixel(&stage->pass->view, &form, texel, color);
+    memcpy(texel->diffuse, color, sizeof color);
+}
+
 void stage_shade_winners(const StageVisit *visit, uint32_t tile)
 {
     const Pass *pass = visit->stage->pass;
@@ -25,6 +35,8 @@ void stage_shade_winners(const StageVisit *visit, uint32_t tile)
             Texel texel;
             pass_setup(pass, primitive, &setup);
             fragment_shade(pass, &setup, primitive, x, y, &texel);
+            if (visit->stage->forward)
+                light_texel(visit, &texel);
             gbuffer_store(visit->target, x, pass->view.height - 1 - y, &texel);
         }
 }
@@ -89,9 +101,16 @@ static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
             Texel texel;
             float color[4];
             gbuffer_load(source, x, row, &texel);
-            fragment_decode(pass, stage_key(&source->depth, stage_pixel(pass, x, y)), x, y, &texel);
-            if (!shade_pixel(&pass->view, &form, &texel, color))
-                continue;
+            if (stage->forward) {
+                memcpy(color, texel.diffuse, sizeof color);
+                if (color[3] <= SHADING_ALPHA_TEST)
+                    continue;
+            } else {
+                fragment_decode(pass, stage_key(&source->depth, stage_pixel(pass, x, y)), x, y,
+                                &texel);
+                if (!shade_pixel(&pass->view, &form, &texel, color))
+                    continue;
+            }
             stage->tile_counts[tile].shaded++;
             if (edges && is_edge(stage, x, y, &texel))
                 color[0] = color[1] = color[2] = 0.0f;
@@ -203,7 +222,7 @@ Result stage_put_gbuffer(const Stage *stage, int peel, const GBuffer *buffers)
         const Image *image;
     } rows[] = {
         {"depth", &buffers->depth},       {"normal", &buffers->normal},
-        {"position", &buffers->position}, {"diffuse", &buffers->diffuse},
+        {"position", &buffers->position}, {stage->forward ? "color" : "diffuse", &buffers->diffuse},
         {"material", &buffers->material}, {"primitive", &buffers->primitive},
     };
     Result result = RESULT_OK;
@@ -284,7 +303,11 @@ Result stage_create(Pass *pass, TraceSink *trace, Frame *frame, void *method, ui
     uint64_t pixels = (uint64_t)pass->view.width * (uint64_t)pass->view.height;
     uint64_t own = stage_gbuffer_bytes(pass) +
                    pixels * (format_pixel_bytes(pass->desc->accum) + 3 * sizeof(uint32_t));
-    *out = (Stage){.pass = pass, .trace = trace, .frame = frame, .method = method};
+    *out = (Stage){.pass = pass,
+                   .trace = trace,
+                   .frame = frame,
+                   .method = method,
+                   .forward = pass->desc->method == METHOD_FORWARD};
     Result result = pass_reserve(pass, own + bytes);
     if (result == RESULT_OK)
         result = allocate(out);

@@ -29,6 +29,7 @@ struct Stage {
     PassCounts *tile_counts; /* the rest, one per tile */
     StageTile function;      /* of the pass that runs */
     const GBuffer *lit;      /* of the lighting pass that runs */
+    bool forward;            /* diffuse holds lit colours (METHOD_FORWARD) */
 };
 
 /* bytes: of the method's own buffers, which count against the limit. frame's images are allocated.

@@ -138,16 +138,14 @@ static Result add_fragment(const Raster *raster, Fragment fragment, bool snapped
     return snapped ? append(fragments, fragment) : RESULT_OK;
 }
 
-/* Whether a masked material's texture has a hole there. Without a texture the view has left out
- * what is masked away. */
+/* Whether a masked material's texture has a hole there. */
 static bool is_cut_out(const Raster *raster, const double weight[3])
 {
-    const Material *material = raster->material;
-    if (material->alpha_mode != ALPHA_MASK || !material->base_color_texture)
+    if (!raster->draw->masked)
         return false;
     MaterialSample sample;
     soup_material(raster->soup, raster->triangle, weight, &sample);
-    return sample.base_color[3] < (double)material->alpha_cutoff;
+    return sample.base_color[3] < (double)raster->material->alpha_cutoff;
 }
 
 /* (x, y): a pixel in the tile and in the coverage's bounds; y up. */

@@ -103,8 +103,26 @@ static void add_light(const Point *point, const ViewLight *light, double rgb[3])
     }
 }
 
+static void shade_phong(const Surface *surface, double rgb[3])
+{
+    static const double light[3] = {SHADING_PHONG_LIGHT_X, SHADING_PHONG_LIGHT_Y,
+                                    SHADING_PHONG_LIGHT_Z};
+    static const double ambient[3] = {SHADING_PHONG_AMBIENT_R, SHADING_PHONG_AMBIENT_GB,
+                                      SHADING_PHONG_AMBIENT_GB};
+    double N[3];
+    normalize(surface->normal, N);
+    double NL = dot(N, light);
+    double highlight = pow(at_least(2.0 * NL * N[2] - light[2], 0.0), 20.0);
+    for (int i = 0; i < 3; i++)
+        rgb[i] = ambient[i] + at_least(NL, 0.0) * surface->material.base_color[i] + highlight;
+}
+
 void radiance_shade(const View *view, const Surface *surface, double rgb[3])
 {
+    if (surface->phong) {
+        shade_phong(surface, rgb);
+        return;
+    }
     Point point = point_setup(surface);
     for (int i = 0; i < 3; i++)
         rgb[i] = 0.0;

@@ -14,6 +14,7 @@ typedef struct Surface {
     double normal[3]; /* any length; normalised here */
     MaterialSample material;
     bool back_light; /* lights behind it add their specular lobe */
+    bool phong;      /* the tutorial's directional light instead of the scene's */
 } Surface;
 
 /* What the surface sends to the eye: linear, not multiplied by alpha. */

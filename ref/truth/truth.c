@@ -60,6 +60,7 @@ static void blend_fragment(const Render *render, const Fragment *fragment, int x
     bool transparent = soup_draw(&render->soup, fragment->triangle)->draw->transparent;
     Surface surface = find_surface(render, fragment, x, y);
     surface.back_light = render->desc->back_light && transparent;
+    surface.phong = render->desc->shading == SHADING_PHONG;
     double alpha = transparent ? surface.material.base_color[3] : 1.0;
     if (alpha <= (double)SHADING_ALPHA_TEST)
         return;

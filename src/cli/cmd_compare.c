@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "cli/bind.h"
 #include "cli/options.h"
+#include "frame/method.h"
 #include "report/html.h"
 #include "report/table.h"
 
@@ -105,6 +106,42 @@ static Result open_directory(const char *path)
     return result;
 }
 
+/* Every method of the table. *agree: whether all of them do. */
+static Result compare_methods(const CompareCommand *command, const Scene *scene, bool *agree)
+{
+    static Threeway reports[METHOD_COUNT];
+    size_t count = 0;
+    Result result = options_check_output(command->json);
+    if (result == RESULT_OK && command->report)
+        result = result_fail(RESULT_BAD_INPUT, "--report: expected a single --method");
+    if (result == RESULT_OK)
+        result = options_check_fma(&command->render);
+    *agree = true;
+    for (int i = 0; i < METHOD_COUNT && result == RESULT_OK; i++) {
+        RenderDesc desc = command->render.desc;
+        desc.method = method_info((MethodId)i)->id;
+        result = threeway_run(scene, command->render.scene_path, &desc, bind_renderers,
+                              command->tolerance, false, &reports[count]);
+        if (result != RESULT_OK)
+            break;
+        threeway_release_images(&reports[count]);
+        if (count == 0)
+            report_methods_head(&reports[0], stdout);
+        report_methods_row(&reports[count], stdout);
+        *agree = *agree && reports[count++].agree;
+    }
+    if (result == RESULT_OK) {
+        report_methods_foot(stdout);
+        printf("\n%s\n", *agree ? "AGREE" : "DIFFER");
+        fflush(stdout);
+    }
+    if (result == RESULT_OK && command->json)
+        result = report_json_write_all(reports, count, command->json);
+    for (size_t i = 0; i < count; i++)
+        threeway_free(&reports[i]);
+    return result;
+}
+
 static Result compare(const CompareCommand *command, const Scene *scene, Threeway *report)
 {
     Result result = command->report ? open_directory(command->report) : RESULT_OK;
@@ -138,17 +175,19 @@ int cmd_compare(int argc, char **argv)
         return code == OPTIONS_HELPED ? EXIT_AGREE : code;
     }
     Scene scene;
-    Threeway report;
+    Threeway report = {0};
+    bool agree = false;
     Result result = command.line ? options_load_scene(&command.render, &scene)
                                  : result_fail(RESULT_NO_MEMORY, "out of memory");
     if (result == RESULT_OK) {
-        result = compare(&command, &scene, &report);
+        result = command.render.all_methods ? compare_methods(&command, &scene, &agree)
+                                            : compare(&command, &scene, &report);
         scene_free(&scene);
     }
     free(command.line);
     if (result != RESULT_OK)
         return options_fail(result);
-    code = report.agree ? EXIT_AGREE : EXIT_DIFFER;
+    code = agree || report.agree ? EXIT_AGREE : EXIT_DIFFER;
     threeway_free(&report);
     return code;
 }

@@ -117,6 +117,8 @@ static Result check(const RenderCommand *command)
     if (command->output && command->trace && strcmp(command->output, command->trace) == 0)
         return result_fail(RESULT_BAD_INPUT, "--trace %s: expected another file than -o",
                            command->trace);
+    if (command->render.all_methods)
+        return result_fail(RESULT_BAD_INPUT, "--method all: expected one of them here");
     Result result = options_check_output(command->output);
     if (result == RESULT_OK)
         result = options_check_output(command->trace);

@@ -101,16 +101,23 @@ RenderOptions options_default(void)
 {
     return (RenderOptions){
         .desc = {.width = 1280, .height = 720},
+        .profile = -1,
         .cull = -1,
         .normals = -1,
+        .shading = -1,
         .ggx = -1,
         .back_light = -1,
         .depth_func = -1,
+        .depth_range = -1,
         .peel_test = -1,
         .gbuffer = -1,
         .position = -1,
         .depth = -1,
         .accum = -1,
+        .sort = -1,
+        .weight = -1,
+        .post = -1,
+        .simd = -1,
     };
 }
 
@@ -146,6 +153,44 @@ static Result choose_camera(const char *text, const Scene *scene, int *out)
                        text, scene->camera_count - 1);
 }
 
+#define APPLY(member, Type)                                                                        \
+    do {                                                                                           \
+        if (options->member >= 0)                                                                  \
+            desc->member = (Type)options->member;                                                  \
+    } while (0)
+
+static Result apply_names(RenderOptions *options)
+{
+    static const PixelFormat depths[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
+    static const PixelFormat accums[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
+                                         FORMAT_RGBA8};
+    RenderDesc *desc = &options->desc;
+    if (options->profile == 1)
+        render_desc_seed_profile(desc);
+    APPLY(cull, CullMode);
+    APPLY(normals, NormalMode);
+    APPLY(shading, ShadingModel);
+    APPLY(ggx, GgxForm);
+    APPLY(back_light, bool);
+    APPLY(depth_func, DepthFunc);
+    APPLY(depth_range, DepthRange);
+    APPLY(peel_test, PeelTest);
+    APPLY(gbuffer, GBufferFormat);
+    APPLY(position, PositionSource);
+    APPLY(sort, SortUnit);
+    APPLY(weight, WeightEquation);
+    APPLY(post, PostEffect);
+    APPLY(simd, SimdChoice);
+    if (options->depth >= 0)
+        desc->depth = depths[options->depth];
+    if (options->accum >= 0)
+        desc->accum = accums[options->accum];
+    if (desc->gbuffer == GBUFFER_COMPACT && options->position == POSITION_BUFFER)
+        return result_fail(RESULT_BAD_INPUT, "--position buffer: a compact G-buffer stores no "
+                                             "positions, expected reconstruct");
+    return RESULT_OK;
+}
+
 Result options_load_scene(RenderOptions *options, Scene *out)
 {
     Result result = load(options->scene_path, out);
@@ -161,31 +206,7 @@ Result options_load_scene(RenderOptions *options, Scene *out)
         scene_override_opacity(out, (float)options->opacity);
     for (int i = 0; options->has_background && i < 3; i++)
         out->background[i] = (float)options->background[i];
-    if (options->seed_profile)
-        render_desc_seed_profile(&options->desc);
-    if (options->cull >= 0)
-        options->desc.cull = (CullMode)options->cull;
-    if (options->normals >= 0)
-        options->desc.normals = (NormalMode)options->normals;
-    if (options->ggx >= 0)
-        options->desc.ggx = (GgxForm)options->ggx;
-    if (options->back_light >= 0)
-        options->desc.back_light = options->back_light;
-    if (options->depth_func >= 0)
-        options->desc.depth_func = (DepthFunc)options->depth_func;
-    if (options->peel_test >= 0)
-        options->desc.peel_test = (PeelTest)options->peel_test;
-    if (options->gbuffer >= 0)
-        options->desc.gbuffer = (GBufferFormat)options->gbuffer;
-    if (options->position >= 0)
-        options->desc.position = (PositionSource)options->position;
-    if (options->desc.gbuffer == GBUFFER_COMPACT && options->position == POSITION_BUFFER)
-        result = result_fail(RESULT_BAD_INPUT, "--position buffer: a compact G-buffer stores no "
-                                               "positions, expected reconstruct");
-    if (options->depth >= 0)
-        options->desc.depth = (PixelFormat)options->depth;
-    if (options->accum >= 0)
-        options->desc.accum = (PixelFormat)options->accum;
+    result = apply_names(options);
     options->desc.unfused = options->fma == FMA_OFF;
     options_apply_fma(options->fma);
     if (result != RESULT_OK)

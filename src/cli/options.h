@@ -24,11 +24,14 @@ typedef struct RenderOptions {
     const char *scene_path; /* the argument SCENE; NULL until it is parsed */
     RenderDesc desc;
     const char *camera; /* name or index; NULL: the first */
-    bool has_opacity, has_background, seed_profile;
+    bool has_opacity, has_background;
+    bool all_methods; /* --method all, of commands that take it */
     double opacity, background[3];
     FmaChoice fma;
-    /* −1: as the profile has it; else the value in RenderDesc. */
-    int cull, normals, ggx, back_light, depth_func, peel_test, gbuffer, position, depth, accum;
+    /* −1: as the profile or the default has it; else the index of the name that was given, which
+     * is the value in RenderDesc but for the formats. */
+    int profile, cull, normals, shading, ggx, back_light, depth_func, depth_range, peel_test,
+        gbuffer, position, depth, accum, sort, weight, post, simd;
 } RenderOptions;
 
 /* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */

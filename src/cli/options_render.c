@@ -5,6 +5,8 @@
 #include "gl/context.h"
 
 #include <errno.h>
+#include <limits.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,6 +89,13 @@ enum {
     KEY_DEPTH,
     KEY_ACCUM,
     KEY_GBUFFER,
+    KEY_SHADING,
+    KEY_BIAS,
+    KEY_DRAW_ORDER,
+    KEY_SORT,
+    KEY_WEIGHT,
+    KEY_NODES,
+    KEY_POST,
     KEY_POSITION,
     KEY_FMA,
     KEY_GL,
@@ -103,7 +112,8 @@ static const struct argp_option render_options[] = {
     {"time", KEY_TIME, "SECONDS", 0, "Turns the lights (default 0)", 1},
     {"opacity", KEY_OPACITY, "A", 0, "Opacity 0 to 1 of every material; below 1 all are peeled", 1},
     {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)", 1},
-    {"method", KEY_METHOD, "NAME", 0, "Transparency method (default peel)", 1},
+    {"method", KEY_METHOD, "NAME", 0,
+     "Transparency method (default peel; compare also takes all); see 'peel methods'", 1},
     {"passes", KEY_PASSES, "N|auto", 0,
      "At most N peels; auto (default) until a peel yields no fragment", 1},
     {"profile", KEY_PROFILE, "NAME", 0,
@@ -113,6 +123,8 @@ static const struct argp_option render_options[] = {
      1},
     {"normals", KEY_NORMALS, "MODE", 0,
      "On back faces: faced (default: turned to the viewer) or kept", 1},
+    {"shading", KEY_SHADING, "MODEL", 0,
+     "ggx (default: the original's point lights) or phong (one directional light)", 1},
     {"ggx", KEY_GGX, "FORM", 0,
      "Highlights' distribution: source (default: as the original computes it) or stable (without "
      "its cancellation)",
@@ -128,6 +140,18 @@ static const struct argp_option render_options[] = {
     {"peel-test", KEY_PEEL_TEST, "TEST", 0,
      "stored (default: depths are compared as stored) or raw (gl_FragCoord.z with a stored depth)",
      1},
+    {"bias", KEY_BIAS, "B", 0,
+     "A peel takes fragments more than B of depth behind the previous one (default 0)", 1},
+    {"draw-order", KEY_DRAW_ORDER, "ORDER", 0,
+     "Order of the instances: scene (default), reverse or shuffle=SEED", 1},
+    {"sort", KEY_SORT, "UNIT", 0,
+     "What the painter sorts by its centroid: objects (default) or triangles", 1},
+    {"weight", KEY_WEIGHT, "N", 0,
+     "Equation of weighted-blended's weights in its paper: 9 (default), 7, 8 or 10", 1},
+    {"nodes-per-pixel", KEY_NODES, "N", 0,
+     "Room of linked-list, on average (default: as many as are needed)", 1},
+    {"post", KEY_POST, "EFFECT", 0,
+     "With linked-list: none (default) or edges (outlines of every layer)", 1},
     {"depth", KEY_DEPTH, "FORMAT", 0, "d32f (default), d24 or d16", 1},
     {"accum", KEY_ACCUM, "FORMAT", 0, "rgba32f (default), rgba16f, rgba16 or rgba8", 1},
     {"gbuffer", KEY_GBUFFER, "SET", 0,
@@ -205,13 +229,14 @@ error_t options_gl(const char *text)
     return error;
 }
 
-static error_t parse_method(const char *text, RenderDesc *desc)
+static error_t parse_method(const char *text, RenderOptions *options)
 {
     const MethodInfo *method = method_find(text);
-    if (method) {
-        desc->method = method->id;
+    options->all_methods = strcmp(text, "all") == 0;
+    if (method)
+        options->desc.method = method->id;
+    if (method || options->all_methods)
         return 0;
-    }
     char expected[256] = "";
     for (int i = 0; i < METHOD_COUNT; i++)
         append_name(expected, sizeof expected, i, METHOD_COUNT, method_info((MethodId)i)->name);
@@ -226,89 +251,78 @@ static error_t parse_lights(const char *text, RenderDesc *desc)
     return error;
 }
 
-/* Options that choose one of a few names. */
+/* An option that chooses one of a few names: where its index goes in RenderOptions. */
+typedef struct NamedOption {
+    int key;
+    const char *option;
+    size_t offset;
+    const char *names[6];
+} NamedOption;
+
+#define NAMED(key, option, member, ...)                                                            \
+    {                                                                                              \
+        key, option, offsetof(RenderOptions, member),                                              \
+        {                                                                                          \
+            __VA_ARGS__                                                                            \
+        }                                                                                          \
+    }
+
+static const NamedOption named_options[] = {
+    NAMED(KEY_PROFILE, "--profile", profile, "default", "seed"),
+    NAMED(KEY_CULL, "--cull", cull, "gltf", "seed", "none"),
+    NAMED(KEY_NORMALS, "--normals", normals, "faced", "kept"),
+    NAMED(KEY_SHADING, "--shading", shading, "ggx", "phong"),
+    NAMED(KEY_GGX, "--ggx", ggx, "source", "stable"),
+    NAMED(KEY_BACK_LIGHT, "--back-light", back_light, "off", "on"),
+    NAMED(KEY_DEPTH_FUNC, "--depth-func", depth_func, "less", "lequal"),
+    NAMED(KEY_DEPTH_RANGE, "--depth-range", depth_range, "gl", "zero-one", "reversed"),
+    NAMED(KEY_PEEL_TEST, "--peel-test", peel_test, "stored", "raw"),
+    NAMED(KEY_GBUFFER, "--gbuffer", gbuffer, "full", "seed", "compact"),
+    NAMED(KEY_POSITION, "--position", position, "buffer", "reconstruct"),
+    NAMED(KEY_DEPTH, "--depth", depth, "d32f", "d24", "d16"),
+    NAMED(KEY_ACCUM, "--accum", accum, "rgba32f", "rgba16f", "rgba16", "rgba8"),
+    NAMED(KEY_SORT, "--sort", sort, "objects", "triangles"),
+    NAMED(KEY_WEIGHT, "--weight", weight, "9", "7", "8", "10"),
+    NAMED(KEY_POST, "--post", post, "none", "edges"),
+    NAMED(KEY_SIMD, "--simd", simd, "auto", "scalar", "sse2", "avx2", "avx512"),
+};
+
 static error_t parse_named(int key, const char *argument, RenderOptions *options)
 {
-    static const char *const profiles[] = {"default", "seed"};
-    static const char *const switches[] = {"on", "off"};
-    static const char *const culls[] = {"gltf", "seed", "none"};
-    static const char *const normals[] = {"faced", "kept"};
-    static const char *const forms[] = {"source", "stable"};
-    static const char *const functions[] = {"less", "lequal"};
-    static const char *const ranges[] = {"gl", "zero-one", "reversed"};
-    static const char *const tests[] = {"stored", "raw"};
-    static const char *const gbuffers[] = {"full", "seed", "compact"};
-    static const char *const positions[] = {"buffer", "reconstruct"};
-    static const PixelFormat depth_formats[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
-    static const char *const depths[] = {"d32f", "d24", "d16"};
-    static const PixelFormat accum_formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
-                                                FORMAT_RGBA8};
-    static const char *const accums[] = {"rgba32f", "rgba16f", "rgba16", "rgba8"};
-    const char *simds[SIMD_COUNT];
-    for (int i = 0; i < SIMD_COUNT; i++)
-        simds[i] = simd_name((SimdChoice)i);
-    int choice = 0;
-    error_t error = 0;
-    switch (key) {
-    case KEY_PROFILE:
-        error = parse_choice("--profile", argument, profiles, 2, &choice);
-        options->seed_profile = choice == 1;
-        break;
-    case KEY_FMA:
-        return options_fma(argument, &options->fma);
-    case KEY_GL:
-        return options_gl(argument);
-    case KEY_CULL:
-        error = parse_choice("--cull", argument, culls, 3, &choice);
-        options->cull = choice;
-        break;
-    case KEY_NORMALS:
-        error = parse_choice("--normals", argument, normals, 2, &choice);
-        options->normals = choice;
-        break;
-    case KEY_GGX:
-        error = parse_choice("--ggx", argument, forms, 2, &choice);
-        options->ggx = choice;
-        break;
-    case KEY_BACK_LIGHT:
-        error = parse_choice("--back-light", argument, switches, 2, &choice);
-        options->back_light = choice == 0;
-        break;
-    case KEY_DEPTH_FUNC:
-        error = parse_choice("--depth-func", argument, functions, 2, &choice);
-        options->depth_func = choice;
-        break;
-    case KEY_DEPTH_RANGE:
-        error = parse_choice("--depth-range", argument, ranges, 3, &choice);
-        options->desc.depth_range = (DepthRange)choice;
-        break;
-    case KEY_PEEL_TEST:
-        error = parse_choice("--peel-test", argument, tests, 2, &choice);
-        options->peel_test = choice;
-        break;
-    case KEY_GBUFFER:
-        error = parse_choice("--gbuffer", argument, gbuffers, 3, &choice);
-        options->gbuffer = choice;
-        break;
-    case KEY_POSITION:
-        error = parse_choice("--position", argument, positions, 2, &choice);
-        options->position = choice;
-        break;
-    case KEY_DEPTH:
-        error = parse_choice("--depth", argument, depths, 3, &choice);
-        options->depth = (int)depth_formats[choice];
-        break;
-    case KEY_ACCUM:
-        error = parse_choice("--accum", argument, accums, 4, &choice);
-        options->accum = (int)accum_formats[choice];
-        break;
-    case KEY_SIMD:
-        error = parse_choice("--simd", argument, simds, SIMD_COUNT, &choice);
-        options->desc.simd = (SimdChoice)choice;
-        break;
-    default:
-        return ARGP_ERR_UNKNOWN;
+    for (size_t i = 0; i < sizeof named_options / sizeof *named_options; i++) {
+        const NamedOption *named = &named_options[i];
+        int count = 0, *out = (int *)((char *)options + named->offset);
+        if (named->key != key)
+            continue;
+        while (count < 6 && named->names[count])
+            count++;
+        return parse_choice(named->option, argument, named->names, count, out);
     }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static error_t parse_draw_order(const char *text, RenderDesc *desc)
+{
+    static const char shuffle[] = "shuffle=";
+    long long seed = 0;
+    if (strcmp(text, "scene") == 0)
+        desc->draw_order = DRAW_ORDER_SCENE;
+    else if (strcmp(text, "reverse") == 0)
+        desc->draw_order = DRAW_ORDER_REVERSE;
+    else if (strncmp(text, shuffle, sizeof shuffle - 1) == 0 &&
+             options_integer(text + sizeof shuffle - 1, 0, LLONG_MAX, &seed))
+        desc->draw_order = DRAW_ORDER_SHUFFLE;
+    else
+        return options_error("--draw-order %s: expected scene, reverse or shuffle=SEED", text);
+    desc->draw_seed = (uint64_t)seed;
+    return 0;
+}
+
+static error_t parse_bias(const char *text, RenderDesc *desc)
+{
+    double bias = 0.0;
+    error_t error = parse_real("--bias", text, 0.0, 1.0, &bias);
+    desc->bias = (float)bias;
     return error;
 }
 
@@ -332,9 +346,19 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
     case KEY_BACKGROUND:
         return parse_background(argument, options);
     case KEY_METHOD:
-        return parse_method(argument, desc);
+        return parse_method(argument, options);
     case KEY_PASSES:
         return parse_passes(argument, desc);
+    case KEY_BIAS:
+        return parse_bias(argument, desc);
+    case KEY_DRAW_ORDER:
+        return parse_draw_order(argument, desc);
+    case KEY_NODES:
+        return options_count("--nodes-per-pixel", argument, 1, 4096, &desc->nodes_per_pixel);
+    case KEY_FMA:
+        return options_fma(argument, &options->fma);
+    case KEY_GL:
+        return options_gl(argument);
     case KEY_THREADS:
         return options_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:

@@ -16,8 +16,8 @@ typedef struct LayerStats {
     uint64_t lost_to_ties;       /* of those, never peeled: equal depth */
     uint64_t lost_to_pass_limit; /* of those, never peeled: passes ended first */
     uint64_t repeated;           /* peeled again at the depth of the previous peel */
-    uint64_t lost_to_overflow;   /* a list had no room; some may be behind the opaque depth */
     uint64_t coverage_differs;   /* truth: fragments that exact, unsnapped coverage would change */
+    uint64_t lost_to_overflow;   /* a list had no room; some may be behind the opaque depth */
 } LayerStats;
 
 typedef struct Frame {

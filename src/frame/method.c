@@ -18,6 +18,10 @@ static const MethodInfo methods[METHOD_COUNT] = {
          "deep deferred: one geometry pass into per-pixel lists of G-buffer "
          "nodes, sorted by depth and primitive",
          true, true},
+    [METHOD_FORWARD] = {METHOD_FORWARD, "forward",
+                        "Everitt, \"Interactive Order-Independent Transparency\", 2001; Bavoil and "
+                        "Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
+                        "front-to-back peeling, shaded in the geometry pass", true, true},
 };
 
 const MethodInfo *method_info(MethodId id)

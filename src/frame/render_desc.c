@@ -45,6 +45,13 @@ GBufferLayout render_desc_layout(const RenderDesc *desc)
         [GBUFFER_SEED] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA8, FORMAT_RGBA8},
         [GBUFFER_COMPACT] = {FORMAT_RG16, FORMAT_NONE, FORMAT_RGBA8, FORMAT_RGBA8},
     };
+    if (desc->method == METHOD_FORWARD)
+        return (GBufferLayout){
+            .normal = FORMAT_NONE,
+            .position = FORMAT_NONE,
+            .diffuse = desc->gbuffer == GBUFFER_FULL ? FORMAT_RGBA32F : desc->accum,
+            .material = desc->peel_test == PEEL_TEST_RAW ? FORMAT_RGBA8 : FORMAT_NONE,
+        };
     GBufferLayout layout =
         layouts[desc->method == METHOD_LINKED_LIST ? GBUFFER_COMPACT : desc->gbuffer];
     if (desc->position == POSITION_RECONSTRUCT)

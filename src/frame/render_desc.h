@@ -13,6 +13,7 @@ typedef enum MethodId {
     METHOD_PEEL = 0,
     METHOD_PEEL_ID,
     METHOD_LINKED_LIST,
+    METHOD_FORWARD,
     METHOD_COUNT
 } MethodId;
 /* How a surface is lit: the original's point lights, or one directional light as in the WebGPU
@@ -162,7 +163,9 @@ static inline PixelFormat render_desc_depth(const RenderDesc *desc)
 }
 
 /* Stored formats of the G-buffer's colour buffers; position is FORMAT_NONE where it is
- * reconstructed, normal FORMAT_RG16 where it is octahedral. */
+ * reconstructed, normal FORMAT_RG16 where it is octahedral. With METHOD_FORWARD diffuse is the lit,
+ * premultiplied colour, in 32-bit floats where the G-buffer is full and else in the accumulation's
+ * format, and there is nothing else but, for the raw peel test, material. */
 typedef struct GBufferLayout {
     PixelFormat normal, position, diffuse, material;
 } GBufferLayout;

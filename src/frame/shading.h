@@ -92,6 +92,14 @@
  * from the stored values, z = −P.z. A pixel without a fragment is one whose stored material has a
  * fourth channel of 0. There c = 0: source = (0, 0, 0, alpha).
  *
+ * With SHADING_PHONG (after a WebGPU tutorial on depth peeling, whose light and eye are directions)
+ * N, diffuse and alpha alone matter; L is SHADING_PHONG_LIGHT, the eye at +z, I the ambient light
+ * SHADING_PHONG_AMBIENT, and the power 20 is three products:
+ *     NL  = dot(N, L);  R = 2·NL·N − L;  RV = max(R.z, 0)
+ *     x2  = RV·RV;  x4 = x2·x2;  x8 = x4·x4;  x20 = x8·x8·x4
+ *     c   = (I + max(NL, 0)·diffuse) + x20
+ *     source = (c·alpha, alpha)
+ *
  * Under-blend into the accumulation buffer, cleared to (0, 0, 0, 1):
  *   rgb = source.rgb·dst.a + dst.rgb;  a = source.a·0 + dst.a·(1 − source.a)
  *   the opaque pass with OPAQUE_BLEND_SEED: all four channels source·dst.a + dst
@@ -111,6 +119,12 @@
 #define SHADING_EDGE_DOT      0.8f
 #define SHADING_EDGE_DEPTH    0.05f
 #define SHADING_PI            3.14159265f
-#define SHADING_DISPLAY_POWER 0.45454547f /* 1/2.2 */
+/* Towards the light, view space: of length 1, right, above and before the surface. */
+#define SHADING_PHONG_LIGHT_X    0.48f
+#define SHADING_PHONG_LIGHT_Y    0.6f
+#define SHADING_PHONG_LIGHT_Z    0.64f
+#define SHADING_PHONG_AMBIENT_R  0.15f
+#define SHADING_PHONG_AMBIENT_GB 0.1f
+#define SHADING_DISPLAY_POWER    0.45454547f /* 1/2.2 */
 
 #endif

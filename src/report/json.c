@@ -62,6 +62,8 @@ static json_t *renderers(Document *json, const Threeway *report)
         put(json, one, "cpu_ms", real(frame->cpu_ms));
         put(json, one, "threads", json_integer(frame->threads));
         put(json, one, "peels", json_integer(frame->peels));
+        put(json, one, "geometry_passes", json_integer(frame->geometry_passes));
+        put(json, one, "fragments_shaded", count(frame->fragments_shaded));
         put(json, one, "buffer_bytes", count(frame->buffer_bytes));
         put(json, one, "version", string(frame->version));
         put(json, one, "renderer", string(frame->renderer));
@@ -166,15 +168,14 @@ static int write_text(const char *text, size_t size, void *writer)
     return file_writer_put(writer, text, size) == RESULT_OK ? 0 : -1;
 }
 
-Result report_json_write(const Threeway *report, const char *path)
+/* Takes root over. */
+static Result write_document(Document *json, json_t *root, const char *path)
 {
-    Document json = {0};
     FileWriter writer;
-    json_t *root = document(&json, report);
     Result result = file_writer_open(path, &writer);
     if (result == RESULT_OK) {
         int dumped =
-            json.failed ? -1 : json_dump_callback(root, write_text, &writer, JSON_INDENT(1));
+            json->failed ? -1 : json_dump_callback(root, write_text, &writer, JSON_INDENT(1));
         file_writer_put(&writer, "\n", 1);
         bool failed = dumped != 0 && !writer.error;
         result = file_writer_close(&writer, !failed);
@@ -183,4 +184,25 @@ Result report_json_write(const Threeway *report, const char *path)
     }
     json_decref(root);
     return result;
+}
+
+Result report_json_write(const Threeway *report, const char *path)
+{
+    Document json = {0};
+    json_t *root = document(&json, report);
+    return write_document(&json, root, path);
+}
+
+Result report_json_write_all(const Threeway *reports, size_t count, const char *path)
+{
+    Document json = {0};
+    json_t *root = json_object(), *array = json_array();
+    bool agree = true;
+    for (size_t i = 0; i < count; i++) {
+        append(&json, array, document(&json, &reports[i]));
+        agree = agree && reports[i].agree;
+    }
+    put(&json, root, "agree", json_boolean(agree));
+    put(&json, root, "methods", array);
+    return write_document(&json, root, path);
 }

@@ -185,6 +185,15 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
 {
     const PairReport *pair = &report->pairs[1];
     const UnaffectedMetrics *unaffected = &pair->unaffected;
+    if (!method_info(report->desc.method)->exact) {
+        char most[SUMMARY_NUMBER], rmse[SUMMARY_NUMBER];
+        snprintf(out, SUMMARY_LINE,
+                 "ref and truth: %s approximates, so it is not judged; largest difference %s, root "
+                 "mean square %s.",
+                 method_info(report->desc.method)->name, summary_real(pair->final.max_abs, most),
+                 summary_real(pair->final.rmse, rmse));
+        return;
+    }
     if (!report->structure.same_scene) {
         char flips[SUMMARY_NUMBER], sets[SUMMARY_NUMBER], again[SUMMARY_NUMBER];
         snprintf(out, SUMMARY_LINE,
@@ -204,10 +213,11 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
     char p99[SUMMARY_NUMBER], same[SUMMARY_NUMBER], all[SUMMARY_NUMBER];
     snprintf(out, SUMMARY_LINE,
              "ref and truth %s: 99th percentile of the relative difference %s (tolerance %g) over "
-             "%s of %s pixels, those with the same fragments in the same order.",
+             "%s of %s pixels%s.",
              unaffected->p99_rel <= report->tolerance ? "agree" : "differ",
              summary_real(unaffected->p99_rel, p99), report->tolerance,
-             summary_count(unaffected->pixels, same), summary_count(pair->final.pixels, all));
+             summary_count(unaffected->pixels, same), summary_count(pair->final.pixels, all),
+             report->structure.known ? ", those with the same fragments in the same order" : "");
     size_t length = strlen(out);
     if (report->seed_profile && unaffected->p99_rel > report->tolerance)
         snprintf(out + length, SUMMARY_LINE - length,

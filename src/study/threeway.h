@@ -23,6 +23,7 @@ typedef struct PairReport {
 
 /* Counts of how ref's fragments differ from truth's. */
 typedef struct StructureReport {
+    bool known;                /* the method traces its layers; else the counts below are 0 */
     LayerStats layers;         /* ref's counts; max, fragments, coverage_differs from truth */
     uint64_t order_inversions; /* adjacent fragments that truth orders the other way */
     uint64_t opaque_flips;     /* pixels whose nearest opaque triangle differs */
@@ -62,6 +63,8 @@ enum {
 Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc,
                     const Renderer renderers[RENDERER_COUNT], double tolerance, bool keep_pictures,
                     Threeway *out);
+/* Frees the pictures and keeps the figures. */
+void threeway_release_images(Threeway *report);
 void threeway_free(Threeway *report);
 
 const char *threeway_renderer_name(int renderer); /* "ref", "gl", "truth" */

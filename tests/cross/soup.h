@@ -83,6 +83,11 @@ static inline void soup_instances(Random *random, Soup *soup)
         case 1: {
             Matrix turn = matrix_rotate_y(random_range(random, -0.2, 0.2));
             Matrix shift = matrix_translate(random_range(random, -1, 1), 0, -0.5);
+            /* Sheared, so that every row has three terms whose order of summation shows. */
+            turn.m[1] = 0.125;
+            turn.m[4] = -0.1875;
+            turn.m[6] = 0.0625;
+            turn.m[9] = -0.25;
             instance->world = matrix_multiply(&shift, &turn);
             break;
         }

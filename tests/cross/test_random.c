@@ -136,7 +136,7 @@ static void report(uint64_t seed, SoupKind kind, const Scene *scene, const Rende
 
 /* ---- all scenes ----------------------------------------------------------------------------- */
 
-static void run_case(uint64_t seed, Totals totals[SOUP_KINDS])
+static void run_case(uint64_t seed, Totals kinds[SOUP_KINDS])
 {
     static Soup soup;
     SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
@@ -144,7 +144,7 @@ static void run_case(uint64_t seed, Totals totals[SOUP_KINDS])
     RenderDesc desc = random_desc(&random, kind);
     soup_make_kind(&random, kind, desc.width, desc.height, &soup);
     ok(scene_validate(&soup.scene));
-    if (compare(&soup.scene, &desc, &totals[kind]) > 0)
+    if (compare(&soup.scene, &desc, &kinds[kind]) > 0)
         report(seed, kind, &soup.scene, &desc);
 }
 
@@ -155,36 +155,46 @@ static void print_row(const char *name, const Totals *totals)
            (unsigned long long)totals->values, (unsigned long long)totals->mismatches);
 }
 
-static Totals print_totals(const Totals totals[SOUP_KINDS])
+static void print_totals(const Totals kinds[SOUP_KINDS])
 {
     Totals all = {0};
     printf("%-16s %8s %14s %14s %15s %11s\n", "kind", "scenes", "pixels", "fragments", "values",
            "mismatches");
     for (int kind = 0; kind < SOUP_KINDS; kind++) {
-        print_row(soup_kind_name((SoupKind)kind), &totals[kind]);
-        all.scenes += totals[kind].scenes;
-        all.pixels += totals[kind].pixels;
-        all.fragments += totals[kind].fragments;
-        all.values += totals[kind].values;
-        all.mismatches += totals[kind].mismatches;
+        print_row(soup_kind_name((SoupKind)kind), &kinds[kind]);
+        all.scenes += kinds[kind].scenes;
+        all.pixels += kinds[kind].pixels;
+        all.fragments += kinds[kind].fragments;
+        all.values += kinds[kind].values;
+        all.mismatches += kinds[kind].mismatches;
     }
     print_row("all", &all);
     printf("pixels compared: %llu, values: %llu, mismatches: %llu\n",
            (unsigned long long)all.pixels, (unsigned long long)all.values,
            (unsigned long long)all.mismatches);
     fflush(stdout);
-    return all;
 }
+
+static Totals totals[SOUP_KINDS];
+static uint64_t first_seed, wanted;
+
+/* Cases of one test: few enough for check's clock. */
+enum {
+    CHUNK = 500
+};
 
 START_TEST(test_scenes)
 {
-    Totals totals[SOUP_KINDS] = {0};
-    uint64_t only = environment("PEEL_TEST_SEED", 0), first = only ? only : 1;
-    uint64_t count = environment("PEEL_TEST_COUNT", only ? 1 : 240);
-    for (uint64_t i = 0; i < count; i++)
-        run_case(first + i, totals);
+    uint64_t from = (uint64_t)_i * CHUNK;
+    for (uint64_t i = from; i < from + CHUNK && i < wanted; i++)
+        run_case(first_seed + i, totals);
+}
+END_TEST
+
+START_TEST(test_totals)
+{
     print_totals(totals);
-    for (int kind = 0; kind < SOUP_KINDS && count >= 240; kind++)
+    for (int kind = 0; kind < SOUP_KINDS && wanted >= 240; kind++)
         ck_assert_msg(totals[kind].fragments > 0, "%s: no transparent fragment in %llu scenes",
                       soup_kind_name((SoupKind)kind), (unsigned long long)totals[kind].scenes);
 }
@@ -192,10 +202,14 @@ END_TEST
 
 int main(void)
 {
+    uint64_t only = environment("PEEL_TEST_SEED", 0);
+    first_seed = only ? only : 1;
+    wanted = environment("PEEL_TEST_COUNT", only ? 1 : 240);
     Suite *suite = suite_create("random scenes");
     TCase *tcase = tcase_create("bits");
     tcase_set_timeout(tcase, 0); /* CTest's */
-    tcase_add_test(tcase, test_scenes);
+    tcase_add_loop_test(tcase, test_scenes, 0, (int)((wanted + CHUNK - 1) / CHUNK));
+    tcase_add_test(tcase, test_totals);
     suite_add_tcase(suite, tcase);
-    return testing_run(suite);
+    return testing_run_here(suite);
 }

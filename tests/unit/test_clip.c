@@ -70,10 +70,14 @@ START_TEST(test_viewport)
     ck_assert_float_bits(vertex.window[2], 0.5f);
     ck_assert_float_bits(vertex.window[3], 0.25f);
     ck_assert_int_eq(vertex.x_fixed8, 16 * 256 - 128);
+    ck_assert_int_eq(vertex.y_fixed8, 48 * 256 - 128);
     /* Snapping ties go to even. */
     vertex = clip_vertex(0x1p-14f, 0x1.8p-13f, 0, 1); /* 32 + 1/512, 32 + 3/512 */
     ck_assert_int_eq(vertex.x_fixed8, 8064);
     ck_assert_int_eq(vertex.y_fixed8, 8066);
+    vertex = clip_vertex(0x1.8p-13f, 0x1p-14f, 0, 1);
+    ck_assert_int_eq(vertex.x_fixed8, 8066);
+    ck_assert_int_eq(vertex.y_fixed8, 8064);
     /* A cut vertex is never fused; others are, where the driver fuses. */
     Vertex fused = clip_vertex(0.1f, 0.3f, 0.7f, 0.9f), cut = fused;
     viewport_transform(&viewport, true, &cut);

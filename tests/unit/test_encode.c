@@ -73,10 +73,14 @@ START_TEST(test_octahedral_special)
                 ck_assert_double_lt(octahedral_error(normal), 3e-5); /* √2·d */
             }
     const float nothing[3] = {0.0f, 0.0f, 0.0f};
-    float encoded[2], decoded[3];
+    const float backward[3] = {-0.0f, 0.0f, -1.0f};
+    float encoded[2], decoded[3], folded[2];
+    encode_octahedral(backward, folded);
     encode_octahedral(nothing, encoded);
     decode_octahedral(encoded, decoded);
     op_leave(mode);
+    ck_assert_float_bits(folded[0], 1.0f); /* a zero of either sign folds to the positive side */
+    ck_assert_float_bits(folded[1], 1.0f);
     ck_assert_float_bits(encoded[0], 0.5f);
     ck_assert_float_bits(encoded[1], 0.5f);
     ck_assert_float_bits(decoded[2], 1.0f);

@@ -8,5 +8,6 @@
 Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result peel_id_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result forward_render(Pass *pass, TraceSink *trace, Frame *frame);
 
 #endif

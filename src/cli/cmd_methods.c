@@ -1,0 +1,36 @@
+/* peel methods: the table of methods. */
+#include "cli/bind.h"
+#include "cli/options.h"
+#include "frame/method.h"
+
+#include <stdio.h>
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    (void)state;
+    return key == ARGP_KEY_ARG ? options_error("'%s': expected no argument", argument)
+                               : ARGP_ERR_UNKNOWN;
+}
+
+static const struct argp methods_argp = {
+    NULL,
+    parse,
+    "",
+    "Lists the methods of --method: what each does, whether it converges to the sorted result, and "
+    "the paper that it is from.",
+    NULL,
+    NULL,
+    NULL};
+
+int cmd_methods(int argc, char **argv)
+{
+    int code = options_parse(&methods_argp, argc, argv, NULL);
+    if (code)
+        return code == OPTIONS_HELPED ? EXIT_AGREE : code;
+    for (int i = 0; i < METHOD_COUNT; i++) {
+        const MethodInfo *method = method_info((MethodId)i);
+        printf("%-17s %-12s %s\n%18s%s\n", method->name, method->exact ? "exact" : "approximate",
+               method->summary, "", method->paper);
+    }
+    return EXIT_AGREE;
+}
