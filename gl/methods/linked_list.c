@@ -10,7 +10,9 @@
  * G-buffer, which is lit and blended as a peel's.
  *
  * Without desc->nodes_per_pixel the buffer has room for GUESS nodes a pixel, and when the counter
- * shows that there are more, for as many as there are: then geometry was drawn twice. */
+ * shows that there are more, for as many as there are: then geometry was drawn twice. The buffer
+ * may be larger than the driver promises to reach in a block: llvmpipe says 2^27 bytes and reaches
+ * all. So the last node is read back, and where it was not stored the frame is refused. */
 #include "methods/methods.h"
 
 #include "base/progress.h"
@@ -154,26 +156,52 @@ static void destroy(Lists *state)
 
 /* ---- the geometry pass ---- */
 
-/* Room for `capacity` nodes. */
+static size_t node_bytes(const Lists *state)
+{
+    return state->words * sizeof(uint32_t);
+}
+
+static Result too_many(const Lists *state, uint64_t nodes)
+{
+    return result_fail(RESULT_UNSUPPORTED,
+                       "linked-list: %llu nodes of %zu bytes: more than the OpenGL driver reaches",
+                       (unsigned long long)nodes, node_bytes(state));
+}
+
+static GLintptr last_primitive(const Lists *state)
+{
+    return (GLintptr)((state->capacity - (size_t)1) * node_bytes(state) +
+                      NODE_PRIMITIVE * sizeof(uint32_t));
+}
+
+/* Room for `capacity` nodes, the last of them marked as not stored. */
 static Result make_nodes(Lists *state, uint64_t capacity)
 {
+    static const uint32_t none = NODE_NONE;
     Targets *targets = &state->passes->targets;
-    uint64_t bytes = capacity * state->words * sizeof(uint32_t);
-    uint64_t block = (uint64_t)context_limits(state->passes->context)->storage_block;
-    if (bytes > block)
-        return result_fail(RESULT_UNSUPPORTED,
-                           "linked-list: %llu nodes of %zu bytes: the OpenGL driver holds %llu",
-                           (unsigned long long)capacity, state->words * sizeof(uint32_t),
-                           (unsigned long long)(block / (state->words * sizeof(uint32_t))));
+    uint64_t bytes = capacity * node_bytes(state);
+    if (bytes > UINT32_MAX)
+        return too_many(state, capacity);
     targets_free_buffer(targets, state->nodes_bytes, &state->nodes);
     state->capacity = (uint32_t)capacity;
     state->nodes_bytes = (size_t)bytes;
     Result result = targets_buffer(targets, state->nodes_bytes, &state->nodes);
     if (result != RESULT_OK)
         return result;
+    gl.NamedBufferSubData(state->nodes, last_primitive(state), sizeof none, &none);
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, BLOCK_NODES, state->nodes);
     gl.ProgramUniform1ui(state->list, UNIFORM_CAPACITY, state->capacity);
     return context_check(state->passes->context, "list nodes");
+}
+
+/* Where all nodes were asked for, the last must be there. */
+static Result check_nodes(const Lists *state)
+{
+    uint32_t primitive;
+    if (state->header.asked < state->capacity)
+        return RESULT_OK;
+    gl.GetNamedBufferSubData(state->nodes, last_primitive(state), sizeof primitive, &primitive);
+    return primitive == NODE_NONE ? too_many(state, state->capacity) : RESULT_OK;
 }
 
 static void read_header(Lists *state)
@@ -211,7 +239,7 @@ static Result draw_lists(Lists *state)
 static uint64_t guess(const Lists *state)
 {
     const Targets *targets = &state->passes->targets;
-    uint64_t node = state->words * sizeof(uint32_t);
+    uint64_t node = node_bytes(state);
     uint64_t nodes = GUESS * (uint64_t)targets->width * (uint64_t)targets->height;
     uint64_t left = (targets->limit - targets->bytes) / node;
     uint64_t block = (uint64_t)context_limits(state->passes->context)->storage_block / node;
@@ -234,6 +262,8 @@ static Result build_lists(Lists *state)
         if (result == RESULT_OK)
             result = draw_lists(state);
     }
+    if (result == RESULT_OK)
+        result = check_nodes(state);
     return result == RESULT_OK ? passes_end_opaque(state->passes) : result;
 }
 
