@@ -86,3 +86,26 @@ void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)
     against_free(&against);
     store_destroy(driver);
 }
+
+uint64_t bits_between(Renderer renderer, const Scene *scene, const RenderDesc *a,
+                      const RenderDesc *b)
+{
+    TraceStore *store;
+    Against against;
+    Frame frames[2];
+    uint64_t differing = 0;
+    ok(store_create(0, &store));
+    ok(renderer(scene, a, store_sink(store), &frames[0]));
+    ok(against_create(store, &against));
+    ok(renderer(scene, b, &against.sink, &frames[1]));
+    ok(against_finish(&against));
+    for (size_t i = 0; i < against.count; i++)
+        differing += against.buffers[i].differing;
+    size_t pixels = (size_t)frames[0].final.width * (size_t)frames[0].final.height;
+    differing += memcmp(frames[0].final.pixels, frames[1].final.pixels, pixels * 16) != 0;
+    for (int i = 0; i < 2; i++)
+        frame_free(&frames[i]);
+    against_free(&against);
+    store_destroy(store);
+    return differing;
+}
