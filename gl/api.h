@@ -14,6 +14,7 @@
     X(BEGINQUERY, BeginQuery)                                                                      \
     X(BINDBUFFERBASE, BindBufferBase)                                                              \
     X(BINDFRAMEBUFFER, BindFramebuffer)                                                            \
+    X(BINDIMAGETEXTURE, BindImageTexture)                                                          \
     X(BINDTEXTUREUNIT, BindTextureUnit)                                                            \
     X(BINDVERTEXARRAY, BindVertexArray)                                                            \
     X(BLENDFUNC, BlendFunc)                                                                        \
@@ -22,6 +23,7 @@
     X(CLAMPCOLOR, ClampColor)                                                                      \
     X(CLEARNAMEDBUFFERDATA, ClearNamedBufferData)                                                  \
     X(CLEARNAMEDFRAMEBUFFERFV, ClearNamedFramebufferfv)                                            \
+    X(CLEARNAMEDFRAMEBUFFERUIV, ClearNamedFramebufferuiv)                                          \
     X(CLIPCONTROL, ClipControl)                                                                    \
     X(COMPILESHADER, CompileShader)                                                                \
     X(CREATEBUFFERS, CreateBuffers)                                                                \
@@ -50,6 +52,7 @@
     X(FINISH, Finish)                                                                              \
     X(GETERROR, GetError)                                                                          \
     X(GETINTEGERV, GetIntegerv)                                                                    \
+    X(GETNAMEDBUFFERSUBDATA, GetNamedBufferSubData)                                                \
     X(GETNAMEDFRAMEBUFFERPARAMETERIV, GetNamedFramebufferParameteriv)                              \
     X(GETPROGRAMINFOLOG, GetProgramInfoLog)                                                        \
     X(GETPROGRAMIV, GetProgramiv)                                                                  \
@@ -58,6 +61,7 @@
     X(GETSHADERIV, GetShaderiv)                                                                    \
     X(GETSTRING, GetString)                                                                        \
     X(LINKPROGRAM, LinkProgram)                                                                    \
+    X(MEMORYBARRIER, MemoryBarrier)                                                                \
     X(NAMEDBUFFERSTORAGE, NamedBufferStorage)                                                      \
     X(NAMEDBUFFERSUBDATA, NamedBufferSubData)                                                      \
     X(NAMEDFRAMEBUFFERDRAWBUFFERS, NamedFramebufferDrawBuffers)                                    \
@@ -66,6 +70,7 @@
     X(PIXELSTOREI, PixelStorei)                                                                    \
     X(PROGRAMUNIFORM1F, ProgramUniform1f)                                                          \
     X(PROGRAMUNIFORM1I, ProgramUniform1i)                                                          \
+    X(PROGRAMUNIFORM1UI, ProgramUniform1ui)                                                        \
     X(PROGRAMUNIFORM3FV, ProgramUniform3fv)                                                        \
     X(PROGRAMUNIFORM4FV, ProgramUniform4fv)                                                        \
     X(PROGRAMUNIFORM4IV, ProgramUniform4iv)                                                        \

@@ -37,6 +37,8 @@ static void describe_driver(Frame *out)
 /* One row per method: see frame/method.h. */
 static Result (*const methods[METHOD_COUNT])(Passes *passes, Frame *out) = {
     [METHOD_PEEL] = gl_peel,
+    [METHOD_PEEL_ID] = gl_peel_id,
+    [METHOD_LINKED_LIST] = gl_linked_list,
     [METHOD_FORWARD] = gl_forward,
 };
 

@@ -89,7 +89,7 @@ Result passes_program(const Passes *passes, const char *name, const char *define
                       const PassesSource *source, GLuint *out)
 {
     char text[1024];
-    const char *parts[5];
+    const char *parts[6];
     int count = 0;
     write_defines(passes, defines, text, sizeof text);
     if (source->surface)
@@ -98,6 +98,8 @@ Result passes_program(const Passes *passes, const char *name, const char *define
         parts[count++] = shader_peel_test;
     if (source->octahedral)
         parts[count++] = shader_octahedral;
+    if (source->gbuffer)
+        parts[count++] = shader_gbuffer;
     if (source->shade)
         parts[count++] = shader_shade;
     parts[count++] = source->main;
@@ -116,6 +118,7 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
     const PassesSource source = {.surface = true,
                                  .peel_test = transparent,
                                  .octahedral = !forward,
+                                 .gbuffer = !forward,
                                  .shade = forward,
                                  .main = forward ? shader_forward_frag : shader_geometry_frag};
     char text[256];
@@ -131,14 +134,16 @@ static Result build_programs(Passes *passes)
     const PassesSource composed = {.main = shader_compose_frag};
     const PassesSource lighting = desc->method == METHOD_FORWARD ? composed : deferred;
     const PassesSource resolve = {.main = shader_resolve_frag};
+    const char *edges = render_desc_edges(desc) ? "#define EDGES\n" : "";
+    char peel[48];
+    snprintf(peel, sizeof peel, "%s%s", edges, desc->back_light ? "#define BACK_LIGHT\n" : "");
     Result result =
         passes_geometry_program(passes, "opaque geometry", "", &passes->opaque_geometry);
     if (result == RESULT_OK)
-        result = passes_program(passes, "opaque lighting", "", &lighting, &passes->opaque_lighting);
-    if (result == RESULT_OK)
         result =
-            passes_program(passes, "peel lighting", desc->back_light ? "#define BACK_LIGHT\n" : "",
-                           &lighting, &passes->peel_lighting);
+            passes_program(passes, "opaque lighting", edges, &lighting, &passes->opaque_lighting);
+    if (result == RESULT_OK)
+        result = passes_program(passes, "peel lighting", peel, &lighting, &passes->peel_lighting);
     if (result == RESULT_OK)
         result =
             passes_program(passes, "resolve",
@@ -149,15 +154,20 @@ static Result build_programs(Passes *passes)
 
 /* ---- the frame ---- */
 
+void passes_depth_test(const RenderDesc *desc, DepthFunc func)
+{
+    if (desc->depth_range == DEPTH_RANGE_REVERSED)
+        gl.DepthFunc(func == DEPTH_LEQUAL ? GL_GEQUAL : GL_GREATER);
+    else
+        gl.DepthFunc(func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
+}
+
 static void set_state(const Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
     gl.ProgramUniform3fv(passes->resolve, UNIFORM_BACKGROUND, 1, passes->view->background);
     gl.Viewport(0, 0, desc->width, desc->height);
-    if (desc->depth_range == DEPTH_RANGE_REVERSED)
-        gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_GEQUAL : GL_GREATER);
-    else
-        gl.DepthFunc(desc->depth_func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
+    passes_depth_test(desc, desc->depth_func);
     gl.ClipControl(GL_LOWER_LEFT,
                    desc->depth_range == DEPTH_RANGE_GL ? GL_NEGATIVE_ONE_TO_ONE : GL_ZERO_TO_ONE);
     gl.BindVertexArray(passes->meshes.vertex_array);
@@ -305,21 +315,31 @@ void passes_clear_layer(const Passes *passes, const Layer *layer)
 
 /* ---- the passes that methods share ---- */
 
-Result passes_opaque(Passes *passes)
+void passes_begin_opaque(const Passes *passes)
 {
     static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     const Targets *targets = &passes->targets;
-    uint64_t samples;
     gl.ClearNamedFramebufferfv(targets->plain_buffer, GL_COLOR, 0, no_color_all_transmitted);
     passes_clear_layer(passes, &targets->opaque);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->opaque.buffer);
-    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, &samples);
-    if (result == RESULT_OK)
-        result = targets_copy_code(targets, targets->opaque.buffer, targets->opaque_code);
+}
+
+Result passes_end_opaque(Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    Result result = targets_copy_code(targets, targets->opaque.buffer, targets->opaque_code);
     if (result == RESULT_OK && passes->trace)
         result = readback_trace_gbuffer(targets, targets->opaque.buffer, -1, passes->trace,
                                         passes->pixels);
     return result;
+}
+
+Result passes_opaque(Passes *passes)
+{
+    uint64_t samples;
+    passes_begin_opaque(passes);
+    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, &samples);
+    return result == RESULT_OK ? passes_end_opaque(passes) : result;
 }
 
 void passes_blend_under(void)

@@ -37,6 +37,7 @@ typedef struct PassesSource {
     bool surface;    /* surface.glsl */
     bool peel_test;  /* peel_test.glsl */
     bool octahedral; /* octahedral.glsl */
+    bool gbuffer;    /* gbuffer.glsl */
     bool shade;      /* shade.glsl */
     const char *main;
 } PassesSource;
@@ -55,7 +56,9 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
 
 /* The draws of one list, in order, to the bound framebuffer, without touching its depth test. */
 void passes_draw_list(const Passes *passes, GLuint program, bool transparent);
-/* The same with the depth test on, counting the fragments that passed. */
+/* Makes func, mirrored where desc->depth_range is, the depth function: at first desc's own is. */
+void passes_depth_test(const RenderDesc *desc, DepthFunc func);
+/* As passes_draw_list, with the depth test on, counting the fragments that passed. */
 Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
                            uint64_t *samples);
 /* One draw; its index range in triangles, 0 and UINT32_MAX for all. */
@@ -71,6 +74,9 @@ void passes_clear_layer(const Passes *passes, const Layer *layer);
 
 /* Clears the opaque G-buffer and the accumulation, draws the opaque list, traces the G-buffer. */
 Result passes_opaque(Passes *passes);
+/* What it does before it draws, with the opaque framebuffer bound, and after. */
+void passes_begin_opaque(const Passes *passes);
+Result passes_end_opaque(Passes *passes);
 /* Shades a peel's G-buffer and blends it under the accumulation. */
 void passes_light_layer(const Passes *passes, const Layer *layer);
 /* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says;

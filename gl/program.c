@@ -12,6 +12,8 @@
     "#define ROUGHNESS_MIN %.9g\n"                                                                 \
     "#define DISTANCE2_MIN %.9g\n"                                                                 \
     "#define SPECULAR_BIAS %.9g\n"                                                                 \
+    "#define EDGE_DOT %.9g\n"                                                                      \
+    "#define EDGE_DEPTH %.9g\n"                                                                    \
     "#define PI %.9g\n"                                                                            \
     "#define PHONG_LIGHT_X %.9g\n"                                                                 \
     "#define PHONG_LIGHT_Y %.9g\n"                                                                 \
@@ -71,10 +73,11 @@ Result program_build(const char *name, const char *defines, const char *vertex,
     char prelude[768];
     snprintf(prelude, sizeof prelude, PRELUDE_FORMAT, (double)SHADING_TINY,
              (double)SHADING_ALPHA_TEST, (double)SHADING_ROUGHNESS_MIN,
-             (double)SHADING_DISTANCE2_MIN, (double)SHADING_SPECULAR_BIAS, (double)SHADING_PI,
-             (double)SHADING_PHONG_LIGHT_X, (double)SHADING_PHONG_LIGHT_Y,
-             (double)SHADING_PHONG_LIGHT_Z, (double)SHADING_PHONG_AMBIENT_R,
-             (double)SHADING_PHONG_AMBIENT_GB, (double)SHADING_DISPLAY_POWER);
+             (double)SHADING_DISTANCE2_MIN, (double)SHADING_SPECULAR_BIAS, (double)SHADING_EDGE_DOT,
+             (double)SHADING_EDGE_DEPTH, (double)SHADING_PI, (double)SHADING_PHONG_LIGHT_X,
+             (double)SHADING_PHONG_LIGHT_Y, (double)SHADING_PHONG_LIGHT_Z,
+             (double)SHADING_PHONG_AMBIENT_R, (double)SHADING_PHONG_AMBIENT_GB,
+             (double)SHADING_DISPLAY_POWER);
     GLuint stages[2] = {0, 0};
     Result result = compile(name, GL_VERTEX_SHADER, prelude, defines, &vertex, 1, &stages[0]);
     if (result == RESULT_OK)

@@ -47,14 +47,42 @@ static Result check_limits(const Context *context, const RenderDesc *desc)
     return RESULT_OK;
 }
 
-Result targets_texture(Targets *targets, PixelFormat format, GLuint *out)
+static Result reserve(Targets *targets, size_t bytes)
 {
-    *out = 0;
-    targets->bytes += format_pixel_bytes(format) * (size_t)targets->width * (size_t)targets->height;
+    targets->bytes += bytes;
     if (targets->bytes > targets->limit)
         return result_fail(
             RESULT_NO_MEMORY, "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
             targets->width, targets->height, targets->bytes >> 10, targets->limit >> 10);
+    return RESULT_OK;
+}
+
+Result targets_buffer(Targets *targets, size_t bytes, GLuint *out)
+{
+    *out = 0;
+    Result result = reserve(targets, bytes);
+    if (result != RESULT_OK)
+        return result;
+    gl.CreateBuffers(1, out);
+    gl.NamedBufferStorage(*out, (GLsizeiptr)bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
+    return RESULT_OK;
+}
+
+void targets_free_buffer(Targets *targets, size_t bytes, GLuint *buffer)
+{
+    if (*buffer)
+        targets->bytes -= bytes;
+    gl.DeleteBuffers(1, buffer);
+    *buffer = 0;
+}
+
+Result targets_texture(Targets *targets, PixelFormat format, GLuint *out)
+{
+    *out = 0;
+    Result result = reserve(targets, format_pixel_bytes(format) * (size_t)targets->width *
+                                         (size_t)targets->height);
+    if (result != RESULT_OK)
+        return result;
     gl.CreateTextures(GL_TEXTURE_2D, 1, out);
     gl.TextureStorage2D(*out, 1, formats_gl(format)->internal, targets->width, targets->height);
     gl.TextureParameteri(*out, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

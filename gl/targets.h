@@ -43,6 +43,11 @@ void targets_destroy(Targets *targets); /* leaves an empty one */
  * deletes it. */
 Result targets_texture(Targets *targets, PixelFormat format, GLuint *out);
 
+/* A buffer of `bytes` bytes, at least 1, contents undefined. NO_MEMORY, and *out is 0, when it
+ * passes the limit. The caller deletes it with targets_free_buffer. */
+Result targets_buffer(Targets *targets, size_t bytes, GLuint *out);
+void targets_free_buffer(Targets *targets, size_t bytes, GLuint *buffer); /* 0 is fine */
+
 /* A framebuffer of `count` colour attachments, and a depth attachment unless depth is 0. NO_GL when
  * the driver does not take it. */
 Result targets_framebuffer(int count, const GLuint *color, GLuint depth, GLuint *out);

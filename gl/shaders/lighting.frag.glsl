@@ -4,6 +4,7 @@
 // OCTAHEDRAL       normals are stored in two channels
 // RECONSTRUCT      the position follows from the stored depth
 // ACCUM_8          the accumulation buffer has 8 bits a channel
+// EDGES            outlines: fragments that differ from a neighbour are black
 
 layout(binding = 0) uniform sampler2D normal_buffer;
 #ifdef RECONSTRUCT
@@ -37,19 +38,49 @@ vec3 fetch_position(ivec2 pixel)
 }
 #endif
 
+vec3 fetch_normal(ivec2 pixel)
+{
+#ifdef OCTAHEDRAL
+    return decode_octahedral(texelFetch(normal_buffer, pixel, 0).xy);
+#else
+    return texelFetch(normal_buffer, pixel, 0).xyz;
+#endif
+}
+
+#ifdef EDGES
+bool differs_from(ivec2 other, vec3 N, float z)
+{
+    if (any(lessThan(other, ivec2(0))) ||
+        any(greaterThanEqual(other, textureSize(material_buffer, 0))))
+        return false;
+    if (texelFetch(material_buffer, other, 0).a == 0.0)
+        return true;
+    precise float turn = dot(N, fetch_normal(other));
+    precise float apart = abs(z + fetch_position(other).z);
+    precise float most = EDGE_DEPTH * z;
+    return turn < EDGE_DOT || apart > most;
+}
+
+bool is_edge(ivec2 pixel, vec3 N, float z)
+{
+    return differs_from(pixel - ivec2(1, 0), N, z) || differs_from(pixel + ivec2(1, 0), N, z) ||
+           differs_from(pixel - ivec2(0, 1), N, z) || differs_from(pixel + ivec2(0, 1), N, z);
+}
+#endif
+
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 diffuse_alpha = texelFetch(diffuse_buffer, pixel, 0);
     if (diffuse_alpha.a <= ALPHA_TEST)
         discard;
-#ifdef OCTAHEDRAL
-    vec3 N = decode_octahedral(texelFetch(normal_buffer, pixel, 0).xy);
-#else
-    vec3 N = texelFetch(normal_buffer, pixel, 0).xyz;
-#endif
+    vec3 N = fetch_normal(pixel), P = fetch_position(pixel);
     vec3 material = texelFetch(material_buffer, pixel, 0).xyz;
-    source = shade(N, fetch_position(pixel), diffuse_alpha, material);
+    source = shade(N, P, diffuse_alpha, material);
+#ifdef EDGES
+    if (is_edge(pixel, N, -P.z))
+        source.rgb = vec3(0.0);
+#endif
 #ifdef ACCUM_8
     // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
     source = clamp(source, 0.0, 1.0);

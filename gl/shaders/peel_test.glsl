@@ -32,34 +32,57 @@ layout(binding = 0) uniform sampler2D previous_depth;
 #define AT_OR_BEHIND(a, b) ((a) >= (b))
 #endif
 
-bool is_peeled_or_hidden()
+// A window depth as the depth buffer stores it, NaN as 1: what a fetch of it gives, and the stored
+// integer, or bits, whose order is the depth's.
+float stored_depth(float window, out uint key)
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    precise float z = gl_FragCoord.z;
-#ifndef TEST_RAW
-    // As the depth buffer stores it; NaN becomes 1.
+    precise float z = window;
     z = z < 1.0 ? z : 1.0;
     z = z > 0.0 ? z : 0.0;
+    key = floatBitsToUint(z);
 #ifdef DEPTH_24
     precise float scaled = z * 16777215.0;
     precise float code = roundEven(scaled);
-    if (AT_OR_BEHIND(uint(code), texelFetch(opaque_depth, pixel, 0).r))
-        return true;
-#if defined(NEXT_PEEL) && defined(PREVIOUS_CODE)
-    if (AT_OR_BEHIND(texelFetch(previous_depth, pixel, 0).r, uint(code)))
-        return true;
-#endif
-    z = code * (1.0 / 16777215.0); // what a fetch of the stored depth gives
+    key = uint(code);
+    z = code * (1.0 / 16777215.0);
 #endif
 #ifdef DEPTH_16
     precise float scaled = z * (65535.0 / 65536.0);
     precise float shifted = scaled + 128.0; // the low bits of the mantissa are the code
-    z = float(floatBitsToUint(shifted) & 0xffffu) * (1.0 / 65535.0);
+    key = floatBitsToUint(shifted) & 0xffffu;
+    z = float(key) * (1.0 / 65535.0);
 #endif
+    return z;
+}
+
+// Of a transparent fragment at window depth `window`.
+bool is_hidden(float window)
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uint code;
+    precise float z = stored_depth(window, code);
+#if defined(OPAQUE_CODE)
+    return AT_OR_BEHIND(code, texelFetch(opaque_depth, pixel, 0).r);
+#elif defined(TEST_RAW)
+    return AT_OR_BEHIND(window, texelFetch(opaque_depth, pixel, 0).r);
+#else
+    return AT_OR_BEHIND(z, texelFetch(opaque_depth, pixel, 0).r);
 #endif
-#ifndef OPAQUE_CODE
-    if (AT_OR_BEHIND(z, texelFetch(opaque_depth, pixel, 0).r))
+}
+
+bool is_peeled_or_hidden()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    precise float z = gl_FragCoord.z;
+    if (is_hidden(z))
         return true;
+#ifndef TEST_RAW
+    uint code;
+    z = stored_depth(z, code);
+#if defined(NEXT_PEEL) && defined(PREVIOUS_CODE)
+    if (AT_OR_BEHIND(texelFetch(previous_depth, pixel, 0).r, code))
+        return true;
+#endif
 #endif
 #if defined(NEXT_PEEL) && !defined(PREVIOUS_CODE)
     precise float previous = texelFetch(previous_depth, pixel, 0).r;

@@ -13,6 +13,8 @@ static const struct {
     Result (*tile)(Pass *pass, Frame *frame);
 } methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {peel_render, tile_render},
+    [METHOD_PEEL_ID] = {peel_id_render, NULL},
+    [METHOD_LINKED_LIST] = {linked_list_render, NULL},
     [METHOD_FORWARD] = {forward_render, NULL},
 };
 

@@ -63,11 +63,36 @@ Result stage_opaque(Stage *stage)
 
 /* ---- lighting ---- */
 
+/* Whether the neighbour of a fragment with this normal and position, in the same layer, is so
+ * different that there is an edge between them: POST_EDGES. */
+static bool differs_from(const Stage *stage, int x, int y, const Texel *texel)
+{
+    const Pass *pass = stage->pass;
+    const GBuffer *source = stage->lit;
+    Texel other;
+    if (x < 0 || y < 0 || x >= pass->view.width || y >= pass->view.height)
+        return false;
+    gbuffer_load(source, x, pass->view.height - 1 - y, &other);
+    if (other.material[3] == 0.0f)
+        return true;
+    fragment_decode(pass, stage_key(&source->depth, stage_pixel(pass, x, y)), x, y, &other);
+    float z = op_neg(texel->position[2]);
+    return op_dot3(texel->normal, other.normal) < SHADING_EDGE_DOT ||
+           op_abs(op_add(z, other.position[2])) > op_mul(SHADING_EDGE_DEPTH, z);
+}
+
+static bool is_edge(const Stage *stage, int x, int y, const Texel *texel)
+{
+    return differs_from(stage, x - 1, y, texel) || differs_from(stage, x + 1, y, texel) ||
+           differs_from(stage, x, y - 1, texel) || differs_from(stage, x, y + 1, texel);
+}
+
 static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
 {
     const Pass *pass = stage->pass;
     const GBuffer *source = stage->lit;
     bool seed = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
+    bool edges = render_desc_edges(pass->desc);
     ShadeForm form = pass_shade_form(pass, transparent);
     PixelRect rect = pass_tile_rect(pass, tile);
     for (int y = rect.y0; y <= rect.y1; y++)
@@ -87,6 +112,8 @@ static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
                     continue;
             }
             stage->tile_counts[tile].shaded++;
+            if (edges && is_edge(stage, x, y, &texel))
+                color[0] = color[1] = color[2] = 0.0f;
             void *pixel = image_pixel(&stage->accum, x, row);
             if (seed)
                 blend_opaque_seed(stage->accum.format, color, pixel);
@@ -216,6 +243,20 @@ void stage_count_drawn(const GBuffer *layer, const Image *previous_depth, uint64
         ++*drawn;
         *repeated += previous_depth && stage_key(&layer->depth, i) == stage_key(previous_depth, i);
     }
+}
+
+void stage_count_remaining(Stage *stage, uint32_t tile)
+{
+    const Pass *pass = stage->pass;
+    PixelRect rect = pass_tile_rect(pass, tile);
+    for (int y = rect.y0; y <= rect.y1; y++)
+        for (int x = rect.x0; x <= rect.x1; x++) {
+            float accum[4];
+            format_fetch(stage->accum.format,
+                         image_pixel(&stage->accum, x, pass->view.height - 1 - y), accum);
+            pass_count_remaining(&stage->tile_counts[tile],
+                                 stage->remaining[stage_pixel(pass, x, y)], accum[3]);
+        }
 }
 
 /* ---- memory ---- */

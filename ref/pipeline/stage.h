@@ -61,6 +61,8 @@ Result stage_put_gbuffer(const Stage *stage, int peel, const GBuffer *buffers);
 /* Counts a peel's pixels, and of those the ones at the previous peel's depth (NULL: none). */
 void stage_count_drawn(const GBuffer *layer, const Image *previous_depth, uint64_t *drawn,
                        uint64_t *repeated);
+/* Adds a tile's stage->remaining, and the transmittance in front of them, to its counts. */
+void stage_count_remaining(Stage *stage, uint32_t tile);
 
 /* ---- pieces of a geometry pass ---- */
 

@@ -17,7 +17,7 @@ typedef struct LayerStats {
     uint64_t lost_to_pass_limit; /* of those, never peeled: passes ended first */
     uint64_t repeated;           /* peeled again at the depth of the previous peel */
     uint64_t coverage_differs;   /* truth: fragments that exact, unsnapped coverage would change */
-    uint64_t lost_to_overflow;   /* of those, for which a list had no room */
+    uint64_t lost_to_overflow;   /* a list had no room; some may be behind the opaque depth */
 } LayerStats;
 
 typedef struct Frame {
@@ -30,6 +30,8 @@ typedef struct Frame {
     double residual_max;      /* greatest transmittance in front of fragments the limit lost */
     uint64_t residual_pixels; /* pixels with such fragments */
     uint64_t buffer_bytes;    /* of the renderer's images and lists */
+    uint64_t nodes;           /* that lists had to hold, lost ones included; 0 without lists */
+    uint32_t node_bytes;      /* of one */
     double time_ms, cpu_ms;   /* wall, and all threads of the renderer; scene upload included */
     int threads;
     bool fused;        /* the arithmetic mode that was used */

@@ -6,6 +6,18 @@ static const MethodInfo methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {METHOD_PEEL, "peel",
                      "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
                      "deferred depth peeling, front to back", true, true},
+    [METHOD_PEEL_ID] = {METHOD_PEEL_ID, "peel-id",
+                        "Everitt, \"Interactive Order-Independent Transparency\", 2001; the order "
+                        "by primitive is ours",
+                        "deferred depth peeling by depth and primitive: keeps coplanar layers",
+                        true, true},
+    [METHOD_LINKED_LIST] =
+        {METHOD_LINKED_LIST, "linked-list",
+         "Breust, \"Deep Deferred Renderer\"; Yang et al., \"Real-Time Concurrent "
+         "Linked List Construction on the GPU\", 2010",
+         "deep deferred: one geometry pass into per-pixel lists of G-buffer "
+         "nodes, sorted by depth and primitive",
+         true, true},
     [METHOD_FORWARD] = {METHOD_FORWARD, "forward",
                         "Everitt, \"Interactive Order-Independent Transparency\", 2001; Bavoil and "
                         "Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",

@@ -52,7 +52,8 @@ GBufferLayout render_desc_layout(const RenderDesc *desc)
             .diffuse = desc->gbuffer == GBUFFER_FULL ? FORMAT_RGBA32F : desc->accum,
             .material = desc->peel_test == PEEL_TEST_RAW ? FORMAT_RGBA8 : FORMAT_NONE,
         };
-    GBufferLayout layout = layouts[desc->gbuffer];
+    GBufferLayout layout =
+        layouts[desc->method == METHOD_LINKED_LIST ? GBUFFER_COMPACT : desc->gbuffer];
     if (desc->position == POSITION_RECONSTRUCT)
         layout.position = FORMAT_NONE;
     return layout;

@@ -11,6 +11,8 @@
 
 typedef enum MethodId {
     METHOD_PEEL = 0,
+    METHOD_PEEL_ID,
+    METHOD_LINKED_LIST,
     METHOD_FORWARD,
     METHOD_COUNT
 } MethodId;
@@ -20,7 +22,8 @@ typedef enum ShadingModel {
     SHADING_GGX = 0,
     SHADING_PHONG
 } ShadingModel;
-/* The order in which instances are drawn; primitive ids stay those of the scene. */
+/* The order in which instances are drawn; primitive ids stay those of the scene, and so does the
+ * order of opaque instances among themselves. */
 typedef enum DrawOrder {
     DRAW_ORDER_SCENE = 0,
     DRAW_ORDER_REVERSE,
@@ -167,8 +170,15 @@ typedef struct GBufferLayout {
     PixelFormat normal, position, diffuse, material;
 } GBufferLayout;
 
+/* Whether edges are drawn: desc->post has a meaning for linked lists only. */
+static inline bool render_desc_edges(const RenderDesc *desc)
+{
+    return desc->post == POST_EDGES && desc->method == METHOD_LINKED_LIST;
+}
+
 const char *gbuffer_name(GBufferFormat format); /* "full", "seed", "compact"; static */
 
+/* METHOD_LINKED_LIST has a compact one, whatever is asked for. */
 GBufferLayout render_desc_layout(const RenderDesc *desc);
 
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,

@@ -85,6 +85,13 @@
  *   A light in front has m = 0 and the same bits as without. N is the stored one: where it is
  *   turned from the viewer (NORMALS_KEPT), NV = 0 and there is no lobe, as without.
  *
+ * With POST_EDGES (METHOD_LINKED_LIST), outlines in every layer and of the opaque surfaces: a
+ * fragment of layer K is on an edge where one of the 4 neighbours of its pixel that are inside the
+ * image has no fragment in layer K, or one with normal N' and distance z' such that
+ *     dot(N, N') < SHADING_EDGE_DOT  or  |z − z'| > SHADING_EDGE_DEPTH·z
+ * from the stored values, z = −P.z. A pixel without a fragment is one whose stored material has a
+ * fourth channel of 0. There c = 0: source = (0, 0, 0, alpha).
+ *
  * With SHADING_PHONG (after a WebGPU tutorial on depth peeling, whose light and eye are directions)
  * N, diffuse and alpha alone matter; L is SHADING_PHONG_LIGHT, the eye at +z, I the ambient light
  * SHADING_PHONG_AMBIENT, and the power 20 is three products:
@@ -109,6 +116,8 @@
 #define SHADING_ROUGHNESS_MIN 0.045f
 #define SHADING_DISTANCE2_MIN 1e-4f
 #define SHADING_SPECULAR_BIAS 1e-4f
+#define SHADING_EDGE_DOT      0.8f
+#define SHADING_EDGE_DEPTH    0.05f
 #define SHADING_PI            3.14159265f
 /* Towards the light, view space: of length 1, right, above and before the surface. */
 #define SHADING_PHONG_LIGHT_X    0.48f

@@ -3,6 +3,7 @@
  * Names: opaque.depth opaque.normal opaque.position opaque.diffuse opaque.material,
  * peel.K.depth peel.K.normal peel.K.position peel.K.diffuse peel.K.material peel.K.accum (K from
  * 0; accum after blending peel K), accum (after the opaque lighting pass), display.
+ * peel.K.id (FORMAT_R32UI): the id buffer of the methods peel-id and linked-list, which gl has too.
  * opaque.primitive and peel.K.primitive (FORMAT_R32UI, UINT32_MAX where there is no fragment) tell
  * which triangle a fragment came from; ref and truth give them, gl does not.
  * Values are the stored values in their stored formats; rows from top to bottom. */

@@ -115,9 +115,27 @@ static void add_draws(const Scene *scene, CullMode cull, const Matrix *view, Vie
     }
 }
 
-/* Which draw comes first changes; their primitive ids do not. */
-static void reorder_draws(const RenderDesc *desc, View *out)
+/* Puts the opaque draws back into the order that they have in scene. */
+static void restore_opaque(const Draw *scene, View *out)
 {
+    size_t next = 0;
+    for (size_t i = 0; i < out->draw_count; i++) {
+        if (out->draws[i].transparent)
+            continue;
+        while (scene[next].transparent)
+            next++;
+        out->draws[i] = scene[next++];
+    }
+}
+
+/* Which draw comes first changes; their primitive ids do not. Nor does the order of opaque draws
+ * among themselves, which decides what is seen of coplanar ones and is not a method's concern. */
+static Result reorder_draws(const RenderDesc *desc, View *out)
+{
+    Draw *scene = memory_array(out->draw_count, sizeof *scene);
+    if (!scene)
+        return RESULT_NO_MEMORY;
+    memcpy(scene, out->draws, out->draw_count * sizeof *scene);
     Random random = random_seed(desc->draw_seed);
     for (size_t i = out->draw_count; i-- > 1;) {
         size_t other = desc->draw_order == DRAW_ORDER_SHUFFLE
@@ -129,6 +147,9 @@ static void reorder_draws(const RenderDesc *desc, View *out)
         out->draws[i] = out->draws[other];
         out->draws[other] = draw;
     }
+    restore_opaque(scene, out);
+    free(scene);
+    return RESULT_OK;
 }
 
 static void add_lights(const Scene *scene, const RenderDesc *desc, const Matrix *view, View *out)
@@ -208,8 +229,10 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
         return RESULT_NO_MEMORY;
     }
     add_draws(scene, desc->cull, &view, out);
-    if (desc->draw_order != DRAW_ORDER_SCENE)
-        reorder_draws(desc, out);
+    if (desc->draw_order != DRAW_ORDER_SCENE && reorder_draws(desc, out) != RESULT_OK) {
+        view_free(out);
+        return RESULT_NO_MEMORY;
+    }
     add_lights(scene, desc, &view, out);
     memcpy(out->ambient, scene->ambient, sizeof out->ambient);
     memcpy(out->background, scene->background, sizeof out->background);

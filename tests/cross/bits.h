@@ -18,4 +18,9 @@ typedef struct Bits {
 /* Renders with both and compares. The test fails where one of them does. */
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out);
 
+/* Renders twice with one renderer: the values that differ in all buffers of the trace, and 1 for
+ * the final image. */
+uint64_t bits_between(Renderer renderer, const Scene *scene, const RenderDesc *a,
+                      const RenderDesc *b);
+
 #endif

@@ -6,6 +6,8 @@
 
 /* Each renders the whole frame. frame's images are allocated; trace may be NULL. */
 Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result peel_id_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result forward_render(Pass *pass, TraceSink *trace, Frame *frame);
 
 #endif

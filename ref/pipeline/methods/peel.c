@@ -62,18 +62,9 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
 
 static void remaining_tile(Stage *stage, uint32_t tile)
 {
-    const Pass *pass = stage->pass;
-    StageVisit visit = {.stage = stage, .list = &pass->geometry.transparent};
-    stage_draw(&pass->transparent_bins, tile, visit_remaining, &visit);
-    PixelRect rect = pass_tile_rect(pass, tile);
-    for (int y = rect.y0; y <= rect.y1; y++)
-        for (int x = rect.x0; x <= rect.x1; x++) {
-            float accum[4];
-            format_fetch(stage->accum.format,
-                         image_pixel(&stage->accum, x, pass->view.height - 1 - y), accum);
-            pass_count_remaining(&stage->tile_counts[tile],
-                                 stage->remaining[stage_pixel(pass, x, y)], accum[3]);
-        }
+    StageVisit visit = {.stage = stage, .list = &stage->pass->geometry.transparent};
+    stage_draw(&stage->pass->transparent_bins, tile, visit_remaining, &visit);
+    stage_count_remaining(stage, tile);
 }
 
 /* ---- the frame ---- */

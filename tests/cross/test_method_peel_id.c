@@ -1,0 +1,222 @@
+/* Method peel-id: ref/pipeline against OpenGL on random soups, and what the method promises. */
+#include "bits.h"
+#include "soup_kinds.h"
+#include "testing.h"
+
+#include "compare/store.h"
+#include "compare/structure.h"
+#include "gl/gl_renderer.h"
+#include "ref/pipeline/pipeline.h"
+#include "ref/truth/truth.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    SOUPS = 3 /* per setting */
+};
+
+static void ok(Result result)
+{
+    ck_assert_msg(result == RESULT_OK, "%s", result_message());
+}
+
+/* A soup of the kind that the seed says, in a window that suits every kind. */
+static void make_soup(uint64_t seed, RenderDesc *desc, Soup *soup)
+{
+    Random random = random_seed(seed);
+    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
+    desc->width = 64;
+    desc->height = soup_kind_is_exact(kind) ? 64 : 45;
+    desc->method = METHOD_PEEL_ID;
+    soup_make_kind(&random, kind, desc->width, desc->height, soup);
+    ok(scene_validate(&soup->scene));
+}
+
+/* ---- ref against gl ---------------------------------------------------------------------------
+ */
+
+static const RenderDesc variants[] = {
+    {.passes = 0},
+    {.depth_func = DEPTH_LEQUAL},
+    {.depth = FORMAT_D24},
+    {.depth = FORMAT_D24, .depth_func = DEPTH_LEQUAL, .gbuffer = GBUFFER_SEED},
+    {.depth = FORMAT_D16, .accum = FORMAT_RGBA16F, .gbuffer = GBUFFER_COMPACT},
+    {.depth_range = DEPTH_RANGE_ZERO_ONE, .passes = 2},
+    {.depth_range = DEPTH_RANGE_REVERSED, .depth_func = DEPTH_LEQUAL},
+    {.depth_range = DEPTH_RANGE_REVERSED, .depth = FORMAT_D24},
+    {.depth_range = DEPTH_RANGE_REVERSED, .depth = FORMAT_D24, .peel_test = PEEL_TEST_RAW},
+    {.depth_range = DEPTH_RANGE_REVERSED,
+     .depth = FORMAT_D16,
+     .depth_func = DEPTH_LEQUAL,
+     .peel_test = PEEL_TEST_RAW},
+    {.depth = FORMAT_D24, .peel_test = PEEL_TEST_RAW, .cull = CULL_NONE, .accum = FORMAT_RGBA8},
+    {.depth = FORMAT_D16, .bias = 0.01f, .accum = FORMAT_RGBA16},
+    {.bias = 0.001f, .normals = NORMALS_KEPT, .back_light = true},
+    {.bias = 0.001f, .depth_range = DEPTH_RANGE_REVERSED, .depth = FORMAT_D24},
+    {.opaque_blend = OPAQUE_BLEND_SEED, .ggx = GGX_STABLE, .passes = 3, .cull = CULL_SEED},
+    {.position = POSITION_RECONSTRUCT, .draw_order = DRAW_ORDER_SHUFFLE, .draw_seed = 7},
+};
+
+START_TEST(test_bits)
+{
+    static Soup soup;
+    uint64_t fragments = 0;
+    for (uint64_t i = 0; i < SOUPS; i++) {
+        RenderDesc desc = variants[_i];
+        uint64_t seed = 1 + (uint64_t)_i * SOUPS + i;
+        Bits bits;
+        make_soup(seed, &desc, &soup);
+        bits_compare(&soup.scene, &desc, &bits);
+        ck_assert_msg(bits.differing == 0, "seed %llu: %s", (unsigned long long)seed,
+                      bits.difference);
+        fragments += bits.layers.fragments;
+    }
+    ck_assert_uint_gt(fragments, 0);
+}
+END_TEST
+
+/* ---- promises ---------------------------------------------------------------------------------
+ */
+
+static void render(Renderer renderer, const Scene *scene, const RenderDesc *desc, TraceSink *sink,
+                   Frame *out)
+{
+    ok(renderer(scene, desc, sink, out));
+}
+
+static bool same_image(const Frame *a, const Frame *b)
+{
+    return memcmp(a->final.pixels, b->final.pixels,
+                  (size_t)a->final.width * (size_t)a->final.height * 16) == 0;
+}
+
+/* Every fragment is a layer; peel loses those at equal depths. */
+START_TEST(test_keeps_ties)
+{
+    static Soup soup;
+    uint64_t tied = 0;
+    for (uint64_t seed = 1; seed <= 4 * SOUP_KINDS; seed++) {
+        RenderDesc desc = {.depth_func = (DepthFunc)(seed & 1)};
+        Frame peel, peel_id;
+        make_soup(seed, &desc, &soup);
+        render(pipeline_render, &soup.scene, &desc, NULL, &peel_id);
+        desc.method = METHOD_PEEL;
+        render(pipeline_render, &soup.scene, &desc, NULL, &peel);
+        ck_assert_uint_eq(peel_id.layers.fragments, peel.layers.fragments);
+        ck_assert_uint_eq(peel_id.layers.lost_to_ties, 0);
+        ck_assert_uint_eq((uint64_t)peel_id.peels, peel_id.layers.max);
+        if (peel.layers.lost_to_ties == 0)
+            ck_assert(same_image(&peel, &peel_id));
+        tied += peel.layers.lost_to_ties;
+        frame_free(&peel);
+        frame_free(&peel_id);
+    }
+    ck_assert_uint_gt(tied, 0);
+}
+END_TEST
+
+/* The order of drawing, which decides what peel loses, changes nothing. */
+START_TEST(test_draw_order)
+{
+    static Soup soup;
+    Renderer renderer = _i ? gl_render : pipeline_render;
+    int peel_differs = 0;
+    for (uint64_t seed = 1; seed <= SOUP_KINDS; seed++) {
+        RenderDesc desc = {.depth_func = (DepthFunc)(seed & 1)};
+        Frame peel[2];
+        make_soup(seed, &desc, &soup);
+        RenderDesc turned = desc;
+        turned.draw_order = seed % 4 < 2 ? DRAW_ORDER_SHUFFLE : DRAW_ORDER_REVERSE;
+        turned.draw_seed = seed;
+        ck_assert_msg(bits_between(renderer, &soup.scene, &desc, &turned) == 0, "seed %llu",
+                      (unsigned long long)seed);
+        for (int i = 0; i < 2; i++) {
+            desc.method = METHOD_PEEL;
+            desc.draw_order = i ? DRAW_ORDER_REVERSE : DRAW_ORDER_SCENE;
+            render(pipeline_render, &soup.scene, &desc, NULL, &peel[i]);
+        }
+        peel_differs += !same_image(&peel[0], &peel[1]);
+        for (int i = 0; i < 2; i++)
+            frame_free(&peel[i]);
+    }
+    ck_assert_int_gt(peel_differs, 0);
+}
+END_TEST
+
+/* Coplanar copies whose depths are the same bits: the layers are the truth's, in its order. */
+START_TEST(test_truth_order)
+{
+    static Soup soup;
+    RenderDesc desc = {.width = 192,
+                       .height = 20,
+                       .method = METHOD_PEEL_ID,
+                       .depth_func = (DepthFunc)_i,
+                       .draw_order = DRAW_ORDER_REVERSE};
+    Random random = random_seed(5);
+    Frame ref, truth;
+    TraceStore *stores[2];
+    soup_make(&random, &soup);
+    soup.camera.yfov = 1.0;
+    for (uint32_t i = 0; i < 5; i++)
+        soup_square(&soup, i, i == 3 ? 1.5 : 2.0, -0.2 * (double)i, 0.9);
+    ok(scene_validate(&soup.scene));
+    for (int i = 0; i < 2; i++)
+        ok(store_create(0, &stores[i]));
+    render(pipeline_render, &soup.scene, &desc, store_sink(stores[0]), &ref);
+    render(truth_render, &soup.scene, &desc, store_sink(stores[1]), &truth);
+    ck_assert_uint_eq(ref.layers.lost_to_ties, 0);
+    ck_assert_int_eq(ref.peels, 5);
+    for (int peel = 0; peel < 5; peel++) {
+        char name[32];
+        Image ids[2];
+        snprintf(name, sizeof name, "peel.%d.primitive", peel);
+        for (int i = 0; i < 2; i++)
+            ok(store_image(stores[i], store_find(stores[i], name), &ids[i]));
+        ck_assert_mem_eq(ids[0].pixels, ids[1].pixels, 192 * 20 * sizeof(uint32_t));
+        for (int i = 0; i < 2; i++)
+            image_free(&ids[i]);
+    }
+    for (int i = 0; i < 2; i++)
+        store_destroy(stores[i]);
+    frame_free(&ref);
+    frame_free(&truth);
+}
+END_TEST
+
+/* What the passes did not come to is counted, and so are three passes a peel. */
+START_TEST(test_pass_limit)
+{
+    static Soup soup;
+    RenderDesc desc = {0};
+    Frame all, two;
+    make_soup(SOUP_PERSPECTIVE, &desc, &soup);
+    render(pipeline_render, &soup.scene, &desc, NULL, &all);
+    desc.passes = 2;
+    render(pipeline_render, &soup.scene, &desc, NULL, &two);
+    ck_assert_int_gt(all.peels, 2);
+    ck_assert_int_eq(all.geometry_passes, 1 + 3 * all.peels + 1);
+    ck_assert_int_eq(two.geometry_passes, 1 + 3 * 2);
+    ck_assert_uint_eq(two.layers.fragments, all.layers.fragments);
+    ck_assert_uint_gt(two.layers.lost_to_pass_limit, 0);
+    ck_assert_uint_eq(two.layers.lost_to_ties, 0);
+    frame_free(&all);
+    frame_free(&two);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("peel-id");
+    TCase *bits = tcase_create("bits"), *tcase = tcase_create("promises");
+    tcase_set_timeout(bits, 120);
+    tcase_set_timeout(tcase, 120);
+    tcase_add_loop_test(bits, test_bits, 0, sizeof variants / sizeof *variants);
+    suite_add_tcase(suite, bits);
+    tcase_add_test(tcase, test_keeps_ties);
+    tcase_add_loop_test(tcase, test_draw_order, 0, 2);
+    tcase_add_loop_test(tcase, test_truth_order, 0, 2);
+    tcase_add_test(tcase, test_pass_limit);
+    suite_add_tcase(suite, tcase);
+    return testing_run(suite);
+}
