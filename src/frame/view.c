@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of planes closer than this the rounding of w comes near the least normal number. */
+#define NEAR_MIN 0x1p-124f
+
 /* The original leaves out entities that cannot be seen at all. A texture only lowers alpha; without
  * one a masked material is all there or not there at all. */
 static bool is_visible(const Material *material)
@@ -211,9 +214,9 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
     out->depth_range = desc->depth_range;
     Matrix projection = make_projection(camera, desc);
     matrix_round(&projection, out->projection);
-    /* Reversed, the depth of infinity is 0. A near plane below 2^-126 would let clipped vertices
-     * have w = 0. */
-    bool fits = isnormal((float)camera->near) && isnormal(out->projection[0]) &&
+    /* Reversed, the depth of infinity is 0. On a near plane about 2^-126 clipped vertices may
+     * round to w = 0. */
+    bool fits = (float)camera->near >= NEAR_MIN && isnormal(out->projection[0]) &&
                 isnormal(out->projection[5]) && isnormal(out->projection[14]) &&
                 (isnormal(out->projection[10]) || out->projection[10] == 0.0f);
     if (!fits)

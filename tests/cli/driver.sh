@@ -2,27 +2,7 @@
 # peel driver on every driver there is: its table, JSON and exit codes. Usage: driver.sh PEEL
 set -u
 peel=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-passed=0
-
-# exits CODE WHAT COMMAND...: output in `output`.
-exits() {
-    code=$1
-    what=$2
-    shift 2
-    "$@" >output 2>&1
-    got=$?
-    if [ $got = "$code" ]; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $what: $*: exit $got, expected $code"
-        tail -5 output
-        failed=$((failed + 1))
-    fi
-}
+. "$(dirname "$0")/checks.sh"
 
 # has WHAT PATTERN [FILE]
 has() {

@@ -4,11 +4,7 @@
 set -u
 peel=$1
 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-passed=0
+. "$(dirname "$0")/checks.sh"
 
 # expect WHAT COMMAND...: the command succeeds.
 expect() {
@@ -19,22 +15,6 @@ expect() {
     else
         echo "FAIL $what: $*: exit $?"
         tail -5 log
-        failed=$((failed + 1))
-    fi
-}
-
-# exits CODE WHAT COMMAND...
-exits() {
-    code=$1
-    what=$2
-    shift 2
-    "$@" >output 2>&1
-    got=$?
-    if [ $got = "$code" ]; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $what: $*: exit $got, expected $code"
-        tail -5 output
         failed=$((failed + 1))
     fi
 }

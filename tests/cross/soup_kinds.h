@@ -269,9 +269,9 @@ static inline void soup_kind_meshes(Random *random, SoupKind kind, const SoupWin
 static inline void soup_make_kind(Random *random, SoupKind kind, int width, int height, Soup *soup)
 {
     soup_make(random, soup);
-    /* Down to a near plane of 2^-126: below, w is flushed to 0 on it and windows are infinite,
+    /* Down to a near plane of 2^-124: below, w may be flushed to 0 on it and windows are infinite,
      * where no rule holds. */
-    double scale = kind == SOUP_DENORMAL ? ldexp(1.0, -100 - (int)(random_bits(random) % 24)) : 1.0;
+    double scale = kind == SOUP_DENORMAL ? ldexp(1.0, -100 - (int)(random_bits(random) % 22)) : 1.0;
     SoupWindow window = {width, height, 0.84, 0.125 * scale, 9.0 * scale}; /* about yfov 1.4 */
     if (soup_kind_is_exact(kind)) {
         window.half = 1.0;

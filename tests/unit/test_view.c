@@ -220,7 +220,7 @@ START_TEST(test_limits)
     const Camera extreme[] = {
         {.yfov = 5e-39, .near = 0.1, .far = 100},
         {.yfov = 1, .near = 1e-39, .far = 100},
-        {.yfov = 1, .near = 0x1p-127, .far = 100},
+        {.yfov = 1, .near = 0x1.fffffep-125, .far = 100},
         {.yfov = 1, .near = 1e10, .far = 1e300},
     };
     for (size_t i = 0; i < sizeof extreme / sizeof extreme[0]; i++) {

@@ -1,0 +1,37 @@
+#include "report/document.h"
+
+#include "base/file.h"
+
+void document_put(Document *json, json_t *object, const char *key, json_t *value)
+{
+    if (json_object_set_new(object, key, value))
+        json->failed = true;
+}
+
+void document_append(Document *json, json_t *array, json_t *value)
+{
+    if (json_array_append_new(array, value))
+        json->failed = true;
+}
+
+static int write_text(const char *text, size_t size, void *writer)
+{
+    return file_writer_put(writer, text, size) == RESULT_OK ? 0 : -1;
+}
+
+Result document_write(const Document *json, json_t *root, const char *path)
+{
+    FileWriter writer;
+    Result result = file_writer_open(path, &writer);
+    if (result == RESULT_OK) {
+        int dumped =
+            json->failed ? -1 : json_dump_callback(root, write_text, &writer, JSON_INDENT(1));
+        file_writer_put(&writer, "\n", 1);
+        bool failed = dumped != 0 && !writer.error;
+        result = file_writer_close(&writer, !failed);
+        if (failed)
+            result = result_fail(RESULT_NO_MEMORY, "%s: out of memory for the document", path);
+    }
+    json_decref(root);
+    return result;
+}

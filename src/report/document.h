@@ -1,0 +1,21 @@
+/* Building a JSON document and writing it: failures are kept until it is written. */
+#ifndef PEEL_REPORT_DOCUMENT_H
+#define PEEL_REPORT_DOCUMENT_H
+
+#include "base/result.h"
+
+#include <jansson.h>
+#include <stdbool.h>
+
+typedef struct Document {
+    bool failed; /* a jansson call failed: memory is exhausted */
+} Document;
+
+/* Both take over value; NULL counts as a failure. */
+void document_put(Document *json, json_t *object, const char *key, json_t *value);
+void document_append(Document *json, json_t *array, json_t *value);
+
+/* Takes over root. Written to a temporary name and renamed; NO_MEMORY after a failure. */
+Result document_write(const Document *json, json_t *root, const char *path);
+
+#endif
