@@ -16,7 +16,10 @@
     X(BINDFRAMEBUFFER, BindFramebuffer)                                                            \
     X(BINDTEXTUREUNIT, BindTextureUnit)                                                            \
     X(BINDVERTEXARRAY, BindVertexArray)                                                            \
+    X(BLENDEQUATION, BlendEquation)                                                                \
+    X(BLENDEQUATIONI, BlendEquationi)                                                              \
     X(BLENDFUNC, BlendFunc)                                                                        \
+    X(BLENDFUNCI, BlendFunci)                                                                      \
     X(BLENDFUNCSEPARATE, BlendFuncSeparate)                                                        \
     X(CHECKNAMEDFRAMEBUFFERSTATUS, CheckNamedFramebufferStatus)                                    \
     X(CLAMPCOLOR, ClampColor)                                                                      \

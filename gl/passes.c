@@ -86,7 +86,7 @@ Result passes_program(const Passes *passes, const char *name, const char *define
                       const PassesSource *source, GLuint *out)
 {
     char text[1024];
-    const char *parts[5];
+    const char *parts[6];
     int count = 0;
     write_defines(passes, defines, text, sizeof text);
     if (source->surface)
@@ -97,6 +97,8 @@ Result passes_program(const Passes *passes, const char *name, const char *define
         parts[count++] = shader_octahedral;
     if (source->shade)
         parts[count++] = shader_shade;
+    if (source->minmax)
+        parts[count++] = shader_minmax;
     parts[count++] = source->main;
     Result result =
         program_build(name, text, source->surface ? shader_geometry_vert : shader_fullscreen_vert,
