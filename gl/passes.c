@@ -73,10 +73,9 @@ static void set_constants(const Passes *passes, const PassesSource *source, GLui
                          back->ray_offset[1]};
     if (source->surface)
         gl.ProgramUniformMatrix4fv(program, UNIFORM_PROJECTION, 1, GL_FALSE, view->projection);
-    if (!source->shade)
-        return;
-    gl.ProgramUniform3fv(program, UNIFORM_AMBIENT, 1, view->ambient);
-    if (source->surface || passes->targets.color_format[GBUFFER_POSITION] != FORMAT_NONE)
+    if (source->shade)
+        gl.ProgramUniform3fv(program, UNIFORM_AMBIENT, 1, view->ambient);
+    if (!source->unproject)
         return;
     gl.ProgramUniform3fv(program, UNIFORM_DEPTH_TO_Z, 1, depth_to_z);
     gl.ProgramUniform4fv(program, UNIFORM_RAY, 1, ray);
@@ -86,7 +85,7 @@ Result passes_program(const Passes *passes, const char *name, const char *define
                       const PassesSource *source, GLuint *out)
 {
     char text[1024];
-    const char *parts[6];
+    const char *parts[7];
     int count = 0;
     write_defines(passes, defines, text, sizeof text);
     if (source->surface)
@@ -97,6 +96,8 @@ Result passes_program(const Passes *passes, const char *name, const char *define
         parts[count++] = shader_octahedral;
     if (source->shade)
         parts[count++] = shader_shade;
+    if (source->unproject)
+        parts[count++] = shader_unproject;
     if (source->minmax)
         parts[count++] = shader_minmax;
     parts[count++] = source->main;
@@ -121,7 +122,11 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
 static Result build_programs(Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
-    const PassesSource lighting = {.octahedral = true, .shade = true, .main = shader_lighting_frag};
+    const PassesSource lighting = {.octahedral = true,
+                                   .shade = true,
+                                   .unproject = passes->targets.color_format[GBUFFER_POSITION] ==
+                                                FORMAT_NONE,
+                                   .main = shader_lighting_frag};
     const PassesSource resolve = {.main = shader_resolve_frag};
     Result result =
         passes_geometry_program(passes, "opaque geometry", "", &passes->opaque_geometry);

@@ -38,6 +38,7 @@ typedef struct PassesSource {
     bool peel_test;  /* peel_test.glsl */
     bool octahedral; /* octahedral.glsl */
     bool shade;      /* shade.glsl */
+    bool unproject;  /* unproject.glsl */
     bool minmax;     /* minmax.glsl */
     const char *main;
 } PassesSource;

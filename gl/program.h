@@ -15,6 +15,7 @@ extern const char shader_surface[];
 extern const char shader_peel_test[];
 extern const char shader_octahedral[];
 extern const char shader_shade[];
+extern const char shader_unproject[];
 extern const char shader_fullscreen_vert[];
 extern const char shader_lighting_frag[];
 extern const char shader_resolve_frag[];
