@@ -96,6 +96,11 @@ void limits_bind(const Limits *limits, int peel)
 {
     const Targets *targets = &limits->passes->targets;
     gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    limits_bind_previous(limits, peel);
+}
+
+void limits_bind_previous(const Limits *limits, int peel)
+{
     gl.BindTextureUnit(UNIT_PREVIOUS_LIMITS, limits->textures[limits_previous(peel)]);
 }
 

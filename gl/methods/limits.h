@@ -37,8 +37,11 @@ Result limits_peels(Limits *limits, Result (*draw_peel)(void *state, int peel), 
 /* A program of limits.frag.glsl over every pixel. */
 Result limits_copy_program(const Passes *passes, const char *defines, GLuint *out);
 
-/* Binds what peel_test.glsl reads and the min-max buffer that the peel reads. */
+/* Binds what a geometry pass reads: for peel_test.glsl, and the min-max buffer that the peel reads.
+ */
 void limits_bind(const Limits *limits, int peel);
+/* The latter alone. */
+void limits_bind_previous(const Limits *limits, int peel);
 
 /* Blending as number/blend.h's over. */
 void limits_blend_over(void);
