@@ -39,20 +39,29 @@ static void add_frames(const Frame *ref, const Frame *driver, Bits *out)
 {
     size_t pixels = (size_t)ref->final.width * (size_t)ref->final.height;
     bool same = ref->peels == driver->peels && ref->layers.repeated == driver->layers.repeated &&
+                ref->geometry_passes == driver->geometry_passes &&
                 memcmp(ref->final.pixels, driver->final.pixels, pixels * 16) == 0;
     out->differing += !same;
     if (!same && !*out->difference)
         snprintf(out->difference, sizeof out->difference,
-                 "%d peels of ref and %d of gl, %llu and %llu layers repeated, or the final image",
-                 ref->peels, driver->peels, (unsigned long long)ref->layers.repeated,
+                 "%d peels of ref and %d of gl, %d and %d geometry passes, %llu and %llu layers "
+                 "repeated, or the final image",
+                 ref->peels, driver->peels, ref->geometry_passes, driver->geometry_passes,
+                 (unsigned long long)ref->layers.repeated,
                  (unsigned long long)driver->layers.repeated);
 }
 
-/* The accumulation of each peel and the last, the display, depth and the stored colours. */
+/* Depth and the stored colours, of the opaque pass and of each peel; the accumulation of each peel
+ * and the last, the display. Other methods have what their headers say. */
 static size_t expected_buffers(const RenderDesc *desc, int peels)
 {
     size_t stored = render_desc_layout(desc).position == FORMAT_NONE ? 4 : 5;
-    return stored + (stored + 1) * (size_t)peels + 2;
+    size_t first = 0, peel = stored + 1;
+    if (desc->method == METHOD_DUAL)
+        first = 1, peel = 9;
+    if (desc->method == METHOD_FORWARD_DUAL)
+        first = 1, peel = 4;
+    return stored + first + peel * (size_t)peels + 2;
 }
 
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)
