@@ -440,28 +440,60 @@ END_TEST
 
 /* ---- memory ---- */
 
+static uint64_t buffer_bytes(Renderer renderer, const Scene *scene, RenderDesc desc,
+                             MethodId method)
+{
+    Frame frame;
+    desc.method = method;
+    desc.ref_path = REF_PATH_DEFINITION;
+    ok(renderer(scene, &desc, NULL, &frame));
+    uint64_t bytes = frame.buffer_bytes;
+    frame_free(&frame);
+    return bytes;
+}
+
+/* Every buffer of the method is in the sum: of `peel` the bytes a pixel are known. */
+START_TEST(test_buffer_bytes)
+{
+    static Layers layers;
+    static const struct {
+        Renderer renderer;
+        uint64_t peel, own[METHODS];
+    } rows[] = {
+        /* G-buffer and a depth more; with primitive ids in ref. Min-max depths, accumulation; six
+         * colours, or three. */
+        {pipeline_render, 72 + 4, {16 + 16 + 8 + 96, 16 + 16 + 8 + 48}},
+        {gl_render, 68 + 4, {16 + 16 + 96, 16 + 16 + 48}},
+    };
+    RenderDesc desc = layers_desc(_i);
+    layers_ladder(6, &layers);
+    for (int i = 0; i < 2; i++) {
+        uint64_t peel = buffer_bytes(rows[i].renderer, &layers.scene, desc, METHOD_PEEL);
+        ck_assert_uint_eq(buffer_bytes(rows[i].renderer, &layers.scene, desc, methods[_i]) +
+                              PIXELS * rows[i].peel,
+                          peel + PIXELS * rows[i].own[_i]);
+    }
+}
+END_TEST
+
 START_TEST(test_memory)
 {
     static Layers layers;
     RenderDesc desc = layers_desc(_i);
     Frame frame;
     layers_ladder(6, &layers);
-    render_ref(&layers.scene, &desc, &frame);
-    desc.max_memory = frame.buffer_bytes;
-    frame_free(&frame);
+    desc.max_memory = (size_t)buffer_bytes(pipeline_render, &layers.scene, desc, methods[_i]);
     render_ref(&layers.scene, &desc, &frame);
     frame_free(&frame);
     desc.max_memory--;
     ck_assert_int_eq(pipeline_render(&layers.scene, &desc, NULL, &frame), RESULT_NO_MEMORY);
     desc.max_memory = 0;
+    /* Textures, and a little that is not limited; the last of them is one of the method's own. */
+    size_t bytes = (size_t)buffer_bytes(gl_render, &layers.scene, desc, methods[_i]);
+    desc.max_memory = bytes;
     ok(gl_render(&layers.scene, &desc, NULL, &frame));
-    uint64_t bytes = frame.buffer_bytes; /* textures, and a little that is not limited */
     frame_free(&frame);
-    desc.max_memory = (size_t)bytes;
-    ok(gl_render(&layers.scene, &desc, NULL, &frame));
-    frame_free(&frame);
-    /* The last target is one of the method's own. */
-    desc.max_memory = (size_t)bytes - 4 * PIXELS;
+    desc.max_memory = bytes - 4 * PIXELS;
     ck_assert_int_eq(gl_render(&layers.scene, &desc, NULL, &frame), RESULT_NO_MEMORY);
 }
 END_TEST
@@ -477,6 +509,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_both_fronts, 0, METHODS);
     tcase_add_loop_test(tcase, test_draw_order, 0, METHODS);
     tcase_add_loop_test(tcase, test_truth, 0, METHODS);
+    tcase_add_loop_test(tcase, test_buffer_bytes, 0, METHODS);
     tcase_add_loop_test(tcase, test_memory, 0, METHODS);
     tcase_add_test(tcase, test_random_scenes);
     suite_add_tcase(suite, tcase);
