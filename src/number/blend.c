@@ -209,11 +209,26 @@ void blend_max(PixelFormat format, const float source[4], void *pixel)
             dst[i] = op_flush(source[i] > dst[i] ? source[i] : dst[i]);
 }
 
+static __attribute__((noinline)) void replace16f(const float source[4], float dst[4])
+{
+    float alpha = source[3], keep = 1.0f - alpha;
+    for (int i = 0; i < 4; i++)
+        dst[i] = source[i] * alpha + dst[i] * keep;
+}
+
+static __attribute__((noinline)) void keep16f(const float source[4], float dst[4])
+{
+    float room = 1.0f - dst[3];
+    for (int i = 0; i < 4; i++)
+        dst[i] = source[i] * room + dst[i];
+}
+
 void blend_replace(PixelFormat format, const float source[4], void *pixel)
 {
     float *dst = pixel, keep = op_sub(1.0f, source[3]);
-    assert(format != FORMAT_RGBA16F);
-    if (format_info(format)->kind == KIND_UNORM)
+    if (format == FORMAT_RGBA16F)
+        half_blend(replace16f, source, pixel);
+    else if (format_info(format)->kind == KIND_UNORM)
         unorm_blend(format, EQUATION_REPLACE, false, source, pixel);
     else
         for (int i = 0; i < 4; i++)
@@ -222,13 +237,15 @@ void blend_replace(PixelFormat format, const float source[4], void *pixel)
 
 void blend_keep(PixelFormat format, const float source[4], void *pixel)
 {
-    float *dst = pixel;
-    assert(format != FORMAT_RGBA16F);
+    if (format == FORMAT_RGBA16F) {
+        half_blend(keep16f, source, pixel);
+        return;
+    }
     if (format_info(format)->kind == KIND_UNORM) {
         unorm_blend(format, EQUATION_KEEP, false, source, pixel);
         return;
     }
-    float room = op_sub(1.0f, dst[3]);
+    float *dst = pixel, room = op_sub(1.0f, dst[3]);
     for (int i = 0; i < 4; i++)
         dst[i] = op_canonical(op_add(op_mul(source[i], room), dst[i]));
 }
