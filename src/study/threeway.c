@@ -248,10 +248,13 @@ static Result take_picture(const Run *run, int peel, const Image *before, PeelPi
     return result;
 }
 
+/* None of a method that has no accumulation after each peel. */
 static Result take_pictures(const Run *run)
 {
     Threeway *report = run->report;
     int peels = report->frames[RENDERER_REF].peels;
+    if (store_find(run->ref_trace, "peel.0.accum") < 0)
+        return RESULT_OK;
     int count = peels < PEEL_PICTURES_MAX ? peels : PEEL_PICTURES_MAX;
     report->peels = memory_array((size_t)count, sizeof *report->peels);
     if (!report->peels)
