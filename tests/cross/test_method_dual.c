@@ -4,6 +4,7 @@
  *
  * PEEL_TEST_SEED=N runs the one random scene that a failure names; PEEL_TEST_COUNT=N that many. */
 #include "bits.h"
+#include "layers.h"
 #include "soup_kinds.h"
 #include "testing.h"
 
@@ -36,91 +37,13 @@ static void render_ref(const Scene *scene, const RenderDesc *desc, Frame *out)
     ok(pipeline_render(scene, desc, NULL, out));
 }
 
-/* ---- layers that fill the window, before an opaque one ---- */
-
 enum {
-    LAYERS_MAX = 16,
     WIDTH = 24,
     HEIGHT = 16,
     PIXELS = WIDTH * HEIGHT
 };
 
-typedef struct Layers {
-    Scene scene;
-    Mesh mesh;
-    float position[12], normal[12];
-    uint32_t index[6];
-    Material materials[LAYERS_MAX + 1];
-    Instance instances[LAYERS_MAX + 1];
-    Light light;
-    Camera camera;
-} Layers;
-
-static void layers_square(Layers *layers)
-{
-    static const float x[4] = {-40, 40, 40, -40}, y[4] = {-40, -40, 40, 40};
-    static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3};
-    for (int i = 0; i < 4; i++) {
-        layers->position[3 * i] = x[i];
-        layers->position[3 * i + 1] = y[i];
-        layers->normal[3 * i + 2] = 1.0f;
-    }
-    memcpy(layers->index, corners, sizeof corners);
-    layers->mesh = (Mesh){.vertex_count = 4,
-                          .triangle_count = 2,
-                          .position = layers->position,
-                          .normal = layers->normal,
-                          .index = layers->index};
-}
-
-/* Layer i at view depth depths[i], drawn in that order; each has a colour and an alpha of its own.
- * Nothing to free; do not copy. */
-static void layers_make(int count, const double *depths, Layers *out)
-{
-    memset(out, 0, sizeof *out);
-    layers_square(out);
-    for (int i = 0; i <= count; i++) {
-        bool opaque = i == count;
-        out->materials[i] = (Material){
-            .name = "",
-            .base_color = {0.1f + 0.05f * (float)(i * 7 % 16), 0.1f + 0.05f * (float)(i * 5 % 16),
-                           0.1f + 0.05f * (float)(i * 11 % 16),
-                           opaque ? 1.0f : 0.2f + 0.04f * (float)(i * 3 % 16)},
-            .roughness = 0.5f,
-            .occlusion = 1.0f,
-            .alpha_mode = opaque ? ALPHA_OPAQUE : ALPHA_BLEND};
-        out->instances[i] = (Instance){.name = "",
-                                       .mesh = 0,
-                                       .material = (uint32_t)i,
-                                       .world = matrix_translate(0, 0, opaque ? -40 : -depths[i])};
-    }
-    out->light = (Light){.position = {3, 4, 0}, .color = {9, 8, 7}, .attenuation = {1, 0.1f, 0.1f}};
-    out->camera = (Camera){
-        .name = "", .world = matrix_identity(), .yfov = 0.8, .near = 0.125, .far = INFINITY};
-    out->scene = (Scene){.name = "layers",
-                         .mesh_count = 1,
-                         .material_count = (size_t)count + 1,
-                         .instance_count = (size_t)count + 1,
-                         .light_count = 1,
-                         .camera_count = 1,
-                         .meshes = &out->mesh,
-                         .materials = out->materials,
-                         .instances = out->instances,
-                         .lights = &out->light,
-                         .cameras = &out->camera,
-                         .ambient = {0.25f, 0.25f, 0.25f},
-                         .background = {0.2f, 0.3f, 0.4f}};
-    ok(scene_validate(&out->scene));
-}
-
-/* Drawn in no order of depth. */
-static void layers_ladder(int count, Layers *out)
-{
-    double depths[LAYERS_MAX] = {0};
-    for (int i = 0; i < count; i++)
-        depths[i] = 2.0 + 0.5 * (i * 5 % 17);
-    layers_make(count, depths, out);
-}
+/* ---- passes ---- */
 
 static RenderDesc layers_desc(int method)
 {
@@ -136,6 +59,7 @@ START_TEST(test_passes)
         Frame ref, truth;
         FinalMetrics error;
         layers_ladder(n, &layers);
+        ok(scene_validate(&layers.scene));
         if (n <= 3 || n >= LAYERS_MAX - 1)
             same_bits(&layers.scene, &desc, &bits);
         render_ref(&layers.scene, &desc, &ref);
@@ -242,7 +166,6 @@ START_TEST(test_both_fronts)
     /* The greater of both alphas where MAX mixes, else the first's. */
     float first = layers.materials[0].base_color[3], second = layers.materials[1].base_color[3];
     ck_assert_float_gt(second, first);
-    (void)first;
     frame_free(&pair);
     /* Without the opaque surface the coverage tells what was blended. */
     layers.scene.instance_count = 2;

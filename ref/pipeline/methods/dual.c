@@ -12,8 +12,8 @@
  * all RGBA32F with --gbuffer full, else RGBA16, RGBA8 and RGBA8. A fragment writes all of them, its
  * own with mask 1 and the others with 0: with LEQUAL the mask is the source's alpha and the last
  * fragment of a depth replaces the others (blend_replace), with LESS it is the target's and the
- * first stays (blend_keep). The position follows from the distance in the min-max buffer of the
- * pass before.
+ * first stays (blend_keep). Whatever desc->position says, the position follows from the distance in
+ * the min-max buffer of the pass before.
  *
  * The front layer is lit and blended under the accumulation, the back layer lit and blended over
  * the back accumulation, which at the end goes under the front's with 1 − its T as alpha; then the
