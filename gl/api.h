@@ -17,7 +17,10 @@
     X(BINDIMAGETEXTURE, BindImageTexture)                                                          \
     X(BINDTEXTUREUNIT, BindTextureUnit)                                                            \
     X(BINDVERTEXARRAY, BindVertexArray)                                                            \
+    X(BLENDEQUATION, BlendEquation)                                                                \
+    X(BLENDEQUATIONI, BlendEquationi)                                                              \
     X(BLENDFUNC, BlendFunc)                                                                        \
+    X(BLENDFUNCI, BlendFunci)                                                                      \
     X(BLENDFUNCSEPARATE, BlendFuncSeparate)                                                        \
     X(CHECKNAMEDFRAMEBUFFERSTATUS, CheckNamedFramebufferStatus)                                    \
     X(CLAMPCOLOR, ClampColor)                                                                      \

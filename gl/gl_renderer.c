@@ -36,6 +36,8 @@ static void describe_driver(Frame *out)
 
 /* One row per method: see frame/method.h. */
 static Result (*const methods[METHOD_COUNT])(Passes *passes, Frame *out) = {
+    [METHOD_DUAL] = gl_dual,
+    [METHOD_FORWARD_DUAL] = gl_forward_dual,
     [METHOD_PEEL] = gl_peel,
     [METHOD_PEEL_ID] = gl_peel_id,
     [METHOD_LINKED_LIST] = gl_linked_list,

@@ -160,6 +160,26 @@ static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
     return result;
 }
 
+static void set_blend(ExperimentBlend blend)
+{
+    static const struct {
+        GLenum equation, source, source_alpha, destination, destination_alpha;
+    } states[BLEND_COUNT] = {
+        [BLEND_UNDER] = {GL_FUNC_ADD, GL_DST_ALPHA, GL_ZERO, GL_ONE, GL_ONE_MINUS_SRC_ALPHA},
+        [BLEND_SEED] = {GL_FUNC_ADD, GL_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ONE},
+        [BLEND_OVER] = {GL_FUNC_ADD, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA,
+                        GL_ONE_MINUS_SRC_ALPHA},
+        [BLEND_MAX] = {GL_MAX, GL_ONE, GL_ONE, GL_ONE, GL_ONE},
+        [BLEND_REPLACE] = {GL_FUNC_ADD, GL_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA,
+                           GL_ONE_MINUS_SRC_ALPHA},
+        [BLEND_KEEP] = {GL_FUNC_ADD, GL_ONE_MINUS_DST_ALPHA, GL_ONE_MINUS_DST_ALPHA, GL_ONE,
+                        GL_ONE},
+    };
+    gl.BlendEquation(states[blend].equation);
+    gl.BlendFuncSeparate(states[blend].source, states[blend].destination,
+                         states[blend].source_alpha, states[blend].destination_alpha);
+}
+
 /* The destination is drawn first, without blending, so that it is what the format can store. */
 static Result blend(GlLab *lab, const Experiment *experiment, uint32_t *out)
 {
@@ -171,10 +191,7 @@ static Result blend(GlLab *lab, const Experiment *experiment, uint32_t *out)
     if (result != RESULT_OK)
         return result;
     draw_all();
-    if (experiment->blend == BLEND_SEED)
-        gl.BlendFunc(GL_DST_ALPHA, GL_ONE);
-    else
-        gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+    set_blend(experiment->blend);
     result = lab_use(lab, COPY_BODY);
     if (result == RESULT_OK) {
         gl.Enable(GL_BLEND);

@@ -75,11 +75,9 @@ static void set_constants(const Passes *passes, const PassesSource *source, GLui
                          back->ray_offset[1]};
     if (source->surface)
         gl.ProgramUniformMatrix4fv(program, UNIFORM_PROJECTION, 1, GL_FALSE, view->projection);
-    if (!source->shade)
-        return;
-    if (passes->desc->shading != SHADING_PHONG)
+    if (source->shade && passes->desc->shading != SHADING_PHONG)
         gl.ProgramUniform3fv(program, UNIFORM_AMBIENT, 1, view->ambient);
-    if (source->surface || passes->targets.color_format[GBUFFER_POSITION] != FORMAT_NONE)
+    if (!source->unproject)
         return;
     gl.ProgramUniform3fv(program, UNIFORM_DEPTH_TO_Z, 1, depth_to_z);
     gl.ProgramUniform4fv(program, UNIFORM_RAY, 1, ray);
@@ -89,7 +87,7 @@ Result passes_program(const Passes *passes, const char *name, const char *define
                       const PassesSource *source, GLuint *out)
 {
     char text[1024];
-    const char *parts[6];
+    const char *parts[PROGRAM_PARTS];
     int count = 0;
     write_defines(passes, defines, text, sizeof text);
     if (source->surface)
@@ -102,6 +100,10 @@ Result passes_program(const Passes *passes, const char *name, const char *define
         parts[count++] = shader_gbuffer;
     if (source->shade)
         parts[count++] = shader_shade;
+    if (source->unproject)
+        parts[count++] = shader_unproject;
+    if (source->minmax)
+        parts[count++] = shader_minmax;
     parts[count++] = source->main;
     Result result =
         program_build(name, text, source->surface ? shader_geometry_vert : shader_fullscreen_vert,
@@ -130,7 +132,11 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
 static Result build_programs(Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
-    const PassesSource deferred = {.octahedral = true, .shade = true, .main = shader_lighting_frag};
+    const PassesSource deferred = {.octahedral = true,
+                                   .shade = true,
+                                   .unproject = passes->targets.color_format[GBUFFER_POSITION] ==
+                                                FORMAT_NONE,
+                                   .main = shader_lighting_frag};
     const PassesSource composed = {.main = shader_compose_frag};
     const PassesSource lighting = desc->method == METHOD_FORWARD ? composed : deferred;
     const PassesSource resolve = {.main = shader_resolve_frag};

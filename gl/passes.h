@@ -39,6 +39,8 @@ typedef struct PassesSource {
     bool octahedral; /* octahedral.glsl */
     bool gbuffer;    /* gbuffer.glsl */
     bool shade;      /* shade.glsl */
+    bool unproject;  /* unproject.glsl */
+    bool minmax;     /* minmax.glsl */
     const char *main;
 } PassesSource;
 

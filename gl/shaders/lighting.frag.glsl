@@ -1,5 +1,5 @@
 // Lighting pass: shades one stored fragment; the result is premultiplied and blended. Behind
-// octahedral.glsl and shade.glsl.
+// octahedral.glsl, shade.glsl and, with RECONSTRUCT, unproject.glsl.
 //
 // OCTAHEDRAL       normals are stored in two channels
 // RECONSTRUCT      the position follows from the stored depth
@@ -15,21 +15,12 @@ layout(binding = 1) uniform sampler2D position_buffer;
 layout(binding = 2) uniform sampler2D diffuse_buffer;
 layout(binding = 3) uniform sampler2D material_buffer;
 
-#ifdef RECONSTRUCT
-layout(location = 17) uniform vec3 depth_to_z; // scale and offset to 1/z, least 1/z
-layout(location = 18) uniform vec4 ray;        // scale, offset of x and y
-#endif
-
 layout(location = 0) out vec4 source;
 
 #ifdef RECONSTRUCT
 vec3 fetch_position(ivec2 pixel)
 {
-    float depth = texelFetch(depth_buffer, pixel, 0).r;
-    precise float inverse_z = max(depth * depth_to_z.x + depth_to_z.y, depth_to_z.z);
-    precise float z = 1.0 / inverse_z;
-    precise vec2 position = (vec2(pixel) * ray.xy + ray.zw) * z;
-    return vec3(position, -z);
+    return unproject(pixel, texelFetch(depth_buffer, pixel, 0).r);
 }
 #else
 vec3 fetch_position(ivec2 pixel)

@@ -12,6 +12,8 @@ static const struct {
     Result (*definition)(Pass *pass, TraceSink *trace, Frame *frame);
     Result (*tile)(Pass *pass, Frame *frame);
 } methods[METHOD_COUNT] = {
+    [METHOD_DUAL] = {dual_render, NULL},
+    [METHOD_FORWARD_DUAL] = {forward_dual_render, NULL},
     [METHOD_PEEL] = {peel_render, tile_render},
     [METHOD_PEEL_ID] = {peel_id_render, NULL},
     [METHOD_LINKED_LIST] = {linked_list_render, NULL},

@@ -76,7 +76,12 @@ typedef enum ExperimentKind {
 
 typedef enum ExperimentBlend {
     BLEND_UNDER, /* number/blend.h */
-    BLEND_SEED
+    BLEND_SEED,
+    BLEND_OVER,
+    BLEND_MAX,
+    BLEND_REPLACE,
+    BLEND_KEEP,
+    BLEND_COUNT
 } ExperimentBlend;
 
 typedef enum RasterField {

@@ -22,6 +22,15 @@ static const MethodInfo methods[METHOD_COUNT] = {
                         "Everitt, \"Interactive Order-Independent Transparency\", 2001; Bavoil and "
                         "Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
                         "front-to-back peeling, shaded in the geometry pass", true, true},
+    [METHOD_DUAL] = {METHOD_DUAL, "dual",
+                     "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"; "
+                     "Bavoil, Myers, \"Order Independent Transparency with Dual Depth Peeling\", "
+                     "2008",
+                     "deferred dual depth peeling, from both sides", true, true},
+    [METHOD_FORWARD_DUAL] = {METHOD_FORWARD_DUAL, "forward-dual",
+                             "Bavoil, Myers, \"Order Independent Transparency with Dual Depth "
+                             "Peeling\", 2008",
+                             "dual depth peeling, shaded in the geometry pass", true, true},
 };
 
 const MethodInfo *method_info(MethodId id)

@@ -12,8 +12,10 @@
 typedef enum MethodId {
     METHOD_PEEL = 0,
     METHOD_PEEL_ID,
-    METHOD_LINKED_LIST,
+    METHOD_DUAL,
     METHOD_FORWARD,
+    METHOD_FORWARD_DUAL,
+    METHOD_LINKED_LIST,
     METHOD_COUNT
 } MethodId;
 /* How a surface is lit: the original's point lights, or one directional light as in the WebGPU

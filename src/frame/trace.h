@@ -6,6 +6,10 @@
  * peel.K.id (FORMAT_R32UI): the id buffer of the methods peel-id and linked-list, which gl has too.
  * opaque.primitive and peel.K.primitive (FORMAT_R32UI, UINT32_MAX where there is no fragment) tell
  * which triangle a fragment came from; ref and truth give them, gl does not.
+ * Of dual and forward-dual, METHOD their name: METHOD.first.depth, METHOD.K.depth, the min-max
+ * depths (FORMAT_RG32F); METHOD.K.back_accum; of forward-dual forward-dual.K.front and .back; of
+ * dual dual.K.front_normal front_diffuse front_material back_normal back_diffuse back_material, and
+ * peel.K.accum. Their peel.K.primitive count the front layers first, then the back ones.
  * Values are the stored values in their stored formats; rows from top to bottom. */
 #ifndef PEEL_FRAME_TRACE_H
 #define PEEL_FRAME_TRACE_H

@@ -31,8 +31,10 @@ static uint32_t multiply(int bits, uint32_t a, uint32_t b)
 
 /* Of integers: one factor of the source, one of the destination. */
 typedef enum Equation {
-    EQUATION_UNDER, /* s·T + d */
-    EQUATION_OVER,  /* s + d·(1 − source alpha) */
+    EQUATION_UNDER,   /* s·T + d */
+    EQUATION_OVER,    /* s + d·(1 − source alpha) */
+    EQUATION_REPLACE, /* s·(source alpha) + d·(1 − source alpha) */
+    EQUATION_KEEP,    /* s·(1 − T) + d */
     EQUATION_ADD,
     EQUATION_MAX
 } Equation;
@@ -47,6 +49,10 @@ static uint32_t unorm_equation(Equation equation, int bits, uint32_t s, uint32_t
         sum = multiply(bits, s, transmittance) + d;
     if (equation == EQUATION_OVER)
         sum = s + multiply(bits, d, most - source_alpha);
+    if (equation == EQUATION_REPLACE)
+        sum = multiply(bits, s, source_alpha) + multiply(bits, d, most - source_alpha);
+    if (equation == EQUATION_KEEP)
+        sum = multiply(bits, s, most - transmittance) + d;
     return sum < most ? sum : most;
 }
 
@@ -201,4 +207,45 @@ void blend_max(PixelFormat format, const float source[4], void *pixel)
     else
         for (int i = 0; i < format_info(format)->channels; i++)
             dst[i] = op_flush(source[i] > dst[i] ? source[i] : dst[i]);
+}
+
+static __attribute__((noinline)) void replace16f(const float source[4], float dst[4])
+{
+    float alpha = source[3], keep = 1.0f - alpha;
+    for (int i = 0; i < 4; i++)
+        dst[i] = source[i] * alpha + dst[i] * keep;
+}
+
+static __attribute__((noinline)) void keep16f(const float source[4], float dst[4])
+{
+    float room = 1.0f - dst[3];
+    for (int i = 0; i < 4; i++)
+        dst[i] = source[i] * room + dst[i];
+}
+
+void blend_replace(PixelFormat format, const float source[4], void *pixel)
+{
+    float *dst = pixel, keep = op_sub(1.0f, source[3]);
+    if (format == FORMAT_RGBA16F)
+        half_blend(replace16f, source, pixel);
+    else if (format_info(format)->kind == KIND_UNORM)
+        unorm_blend(format, EQUATION_REPLACE, false, source, pixel);
+    else
+        for (int i = 0; i < 4; i++)
+            dst[i] = op_canonical(op_add(op_mul(source[i], source[3]), op_mul(dst[i], keep)));
+}
+
+void blend_keep(PixelFormat format, const float source[4], void *pixel)
+{
+    if (format == FORMAT_RGBA16F) {
+        half_blend(keep16f, source, pixel);
+        return;
+    }
+    if (format_info(format)->kind == KIND_UNORM) {
+        unorm_blend(format, EQUATION_KEEP, false, source, pixel);
+        return;
+    }
+    float *dst = pixel, room = op_sub(1.0f, dst[3]);
+    for (int i = 0; i < 4; i++)
+        dst[i] = op_canonical(op_add(op_mul(source[i], room), dst[i]));
 }

@@ -27,4 +27,11 @@ void blend_add(PixelFormat format, const float source[4], void *pixel);
  * NaN. */
 void blend_max(PixelFormat format, const float source[4], void *pixel);
 
+/* glBlendFunc(SRC_ALPHA, ONE_MINUS_SRC_ALPHA) on all four channels: an alpha of 1 puts the source
+ * in the pixel's place, one of 0 leaves the pixel. */
+void blend_replace(PixelFormat format, const float source[4], void *pixel);
+
+/* glBlendFunc(ONE_MINUS_DST_ALPHA, ONE): fills a pixel of zeros, leaves one whose alpha is 1. */
+void blend_keep(PixelFormat format, const float source[4], void *pixel);
+
 #endif

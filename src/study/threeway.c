@@ -274,10 +274,12 @@ static Result take_picture(const Run *run, int peel, const Image *before, PeelPi
     return result;
 }
 
+/* None of a method that has no accumulation after each peel. */
 static Result take_pictures(const Run *run)
 {
     Threeway *report = run->report;
-    int peels = report->structure.known ? report->frames[RENDERER_REF].peels : 0;
+    bool traced = report->structure.known && store_find(run->ref_trace, "peel.0.accum") >= 0;
+    int peels = traced ? report->frames[RENDERER_REF].peels : 0;
     int count = peels < PEEL_PICTURES_MAX ? peels : PEEL_PICTURES_MAX;
     report->peels = memory_array((size_t)count, sizeof *report->peels);
     if (!report->peels)

@@ -48,13 +48,15 @@ static void add_frames(const Frame *ref, const Frame *driver, Bits *out)
     out->differing += !same;
     if (!same && !*out->difference)
         snprintf(out->difference, sizeof out->difference,
-                 "%d peels of ref and %d of gl, %llu and %llu layers repeated, or the final image",
-                 ref->peels, driver->peels, (unsigned long long)ref->layers.repeated,
+                 "%d peels of ref and %d of gl, %d and %d geometry passes, %llu and %llu layers "
+                 "repeated, or the final image",
+                 ref->peels, driver->peels, ref->geometry_passes, driver->geometry_passes,
+                 (unsigned long long)ref->layers.repeated,
                  (unsigned long long)driver->layers.repeated);
 }
 
-/* Depth and the stored colours of the opaque pass and of each peel, the accumulation of each peel
- * and the last, the display. */
+/* Depth and the stored colours, of the opaque pass and of each peel; the accumulation of each peel
+ * and the last, the display. Other methods have what their headers say. */
 static size_t expected_buffers(const RenderDesc *desc, int peels)
 {
     GBufferLayout layout = render_desc_layout(desc);
@@ -62,7 +64,12 @@ static size_t expected_buffers(const RenderDesc *desc, int peels)
     size_t stored = 1, ids = desc->method == METHOD_PEEL_ID || desc->method == METHOD_LINKED_LIST;
     for (int i = 0; i < 4; i++)
         stored += colors[i] != FORMAT_NONE;
-    return stored + (stored + ids + 1) * (size_t)peels + 2;
+    size_t first = 0, peel = stored + ids + 1;
+    if (desc->method == METHOD_DUAL)
+        first = 1, peel = 9;
+    if (desc->method == METHOD_FORWARD_DUAL)
+        first = 1, peel = 4;
+    return stored + first + peel * (size_t)peels + 2;
 }
 
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)

@@ -7,7 +7,8 @@
 
 typedef struct Bits {
     uint64_t pixels, values; /* compared, over all buffers */
-    uint64_t differing;      /* values; and 1 where peels, repeats or the final image differ */
+    uint64_t differing;      /* values; and 1 where peels, passes, repeats or the final image
+                              * differ */
     size_t buffers;          /* of the trace */
     int peels;               /* of ref */
     LayerStats layers;       /* of ref */

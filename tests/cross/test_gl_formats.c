@@ -94,8 +94,19 @@ END_TEST
 
 START_TEST(test_blend)
 {
-    check_colors((Experiment){.kind = EXPERIMENT_BLEND, .blend = BLEND_UNDER}, ACCUMULATIONS);
-    check_colors((Experiment){.kind = EXPERIMENT_BLEND, .blend = BLEND_SEED}, ACCUMULATIONS);
+    check_colors((Experiment){.kind = EXPERIMENT_BLEND, .blend = (ExperimentBlend)_i},
+                 ACCUMULATIONS);
+}
+END_TEST
+
+START_TEST(test_blend_two_channels)
+{
+    for (int set = 0; set < INPUT_SETS; set++) {
+        Experiment experiment = {
+            .kind = EXPERIMENT_BLEND, .format = FORMAT_RG32F, .blend = BLEND_MAX};
+        fill(FORMAT_RG32F, set);
+        labs_assert_equal(&experiment, labs_float, "rg32f", set);
+    }
 }
 END_TEST
 
@@ -110,7 +121,8 @@ int main(void)
     tcase_add_test(tcase, test_fetch);
     tcase_add_test(tcase, test_depth);
     tcase_add_test(tcase, test_depth24_order);
-    tcase_add_test(tcase, test_blend);
+    tcase_add_loop_test(tcase, test_blend, 0, BLEND_COUNT);
+    tcase_add_test(tcase, test_blend_two_channels);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

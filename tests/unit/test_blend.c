@@ -155,6 +155,67 @@ START_TEST(test_product16_differs)
 }
 END_TEST
 
+/* ---- masks: dual depth peeling ---- */
+
+static const PixelFormat mask_formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
+                                           FORMAT_RGBA8};
+
+/* Stores source without blending. */
+static void ck_assert_stored(PixelFormat format, const void *pixel, const float source[4])
+{
+    unsigned char stored[16];
+    format_store(format, source, stored);
+    ck_assert_mem_eq(pixel, stored, format_pixel_bytes(format));
+}
+
+/* Of sources whose mask is 1 the last or the first is there to the bit; those with 0 are not. */
+START_TEST(test_masks)
+{
+    Random random = random_seed(5);
+    for (int i = 0; i < 100000; i++) {
+        PixelFormat format = mask_formats[i % 4];
+        unsigned char last[16] = {0}, first[16] = {0};
+        const float none[4] = {0, 0, 0, 0};
+        float source[2][4];
+        for (int k = 0; k < 2; k++) {
+            for (int c = 0; c < 3; c++)
+                source[k][c] = (float)random_unit(&random);
+            source[k][3] = 1.0f;
+            blend_replace(format, source[k], last);
+            blend_replace(format, none, last);
+            blend_keep(format, source[k], first);
+            blend_keep(format, none, first);
+        }
+        ck_assert_stored(format, last, source[1]);
+        ck_assert_stored(format, first, source[0]);
+    }
+}
+END_TEST
+
+/* Over: half-transparent red over half-transparent green. Max: channel by channel. */
+START_TEST(test_over_and_max_by_hand)
+{
+    float pixel[4] = {0, 0.5f, 0, 0.5f};
+    blend_over(FORMAT_RGBA32F, (float[4]){0.5f, 0, 0, 0.5f}, pixel);
+    ck_assert_float_bits(pixel[0], 0.5f);
+    ck_assert_float_bits(pixel[1], 0.25f);
+    ck_assert_float_bits(pixel[3], 0.25f);
+    uint8_t codes[4] = {0, 128, 0, 127};
+    blend_over(FORMAT_RGBA8, (float[4]){128 / 255.0f, 0, 0, 128 / 255.0f}, codes);
+    ck_assert_uint_eq(codes[0], 128);
+    ck_assert_uint_eq(codes[1], 64);
+    ck_assert_uint_eq(codes[3], 63);
+    float limits[2] = {-2.0f, -2.0f};
+    blend_max(FORMAT_RG32F, (float[4]){-0.25f, 0.25f, 9, 9}, limits);
+    blend_max(FORMAT_RG32F, (float[4]){-0.5f, 0.5f, 9, 9}, limits);
+    ck_assert_float_bits(limits[0], -0.25f);
+    ck_assert_float_bits(limits[1], 0.5f);
+    blend_max(FORMAT_RG32F, (float[4]){NAN, INFINITY, 0, 0}, limits);
+    ck_assert_float_bits(limits[0], -0.25f);
+    ck_assert_float_bits(limits[1], INFINITY);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("blend");
@@ -169,6 +230,8 @@ int main(void)
     tcase_add_test(tcase, test_under16_by_hand);
     tcase_add_test(tcase, test_product16);
     tcase_add_test(tcase, test_product16_differs);
+    tcase_add_test(tcase, test_masks);
+    tcase_add_test(tcase, test_over_and_max_by_hand);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

@@ -5,6 +5,8 @@
 #include "ref/pipeline/pass.h"
 
 /* Each renders the whole frame. frame's images are allocated; trace may be NULL. */
+Result dual_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result forward_dual_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result peel_id_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame);
