@@ -18,6 +18,7 @@
     X(BINDVERTEXARRAY, BindVertexArray)                                                            \
     X(BLENDFUNC, BlendFunc)                                                                        \
     X(BLENDFUNCSEPARATE, BlendFuncSeparate)                                                        \
+    X(BLENDFUNCI, BlendFunci)                                                                      \
     X(CHECKNAMEDFRAMEBUFFERSTATUS, CheckNamedFramebufferStatus)                                    \
     X(CLAMPCOLOR, ClampColor)                                                                      \
     X(CLEARNAMEDBUFFERDATA, ClearNamedBufferData)                                                  \

@@ -37,6 +37,7 @@ static void describe_driver(Frame *out)
 /* One row per method: see frame/method.h. */
 static Result (*const methods[METHOD_COUNT])(Passes *passes, Frame *out) = {
     [METHOD_PEEL] = gl_peel,
+    [METHOD_WEIGHTED_AVERAGE] = gl_weighted_average,
 };
 
 /* Not inlined: see op_enter. */

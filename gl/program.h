@@ -18,6 +18,7 @@ extern const char shader_shade[];
 extern const char shader_fullscreen_vert[];
 extern const char shader_lighting_frag[];
 extern const char shader_resolve_frag[];
+extern const char shader_weighted_average_frag[];
 extern const char shader_fuses_vert[];
 extern const char shader_fuses_frag[];
 extern const char shader_experiment_vert[];

@@ -7,5 +7,6 @@
 /* Each draws the frame up to the resolve pass and fills out->peels, geometry_passes and what it
  * counts in out->layers. With a trace, every buffer of it but "display" is read back. */
 Result gl_peel(Passes *passes, Frame *out);
+Result gl_weighted_average(Passes *passes, Frame *out);
 
 #endif

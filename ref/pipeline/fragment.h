@@ -74,12 +74,12 @@ static inline bool fragment_masked(const Pass *pass, const Setup *setup, const P
     return base[3] < op_flush(material->alpha_cutoff);
 }
 
-/* What it writes to its targets, unquantised. Flushing mode. */
-static inline void fragment_shade(const Pass *pass, const Setup *setup, const Primitive *primitive,
-                                  int x, int y, Texel *out)
+/* The surface as it is: normal, position, base colour with the material's alpha, material.
+ * Flushing mode. */
+static inline void fragment_surface(const Pass *pass, const Setup *setup,
+                                    const Primitive *primitive, int x, int y, Texel *out)
 {
-    const Draw *draw = &pass->view.draws[primitive->draw];
-    const Material *material = &pass->scene->materials[draw->material];
+    const Material *material = &pass->scene->materials[pass->view.draws[primitive->draw].material];
     const Vertex *const *v = setup->corner;
     float inverse_w = fragment_inverse_w(pass, setup, x, y);
     float normal[3];
@@ -100,13 +100,20 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
         out->normal[i] = turn ? op_neg(n) : n;
     }
     out->normal[3] = 0.0f;
-    if (pass->layout.normal == FORMAT_RG16)
-        encode_octahedral(out->normal, out->normal);
     fragment_material(pass, setup, material, inverse_w, x, y, out->diffuse, out->material);
-    if (!draw->transparent)
-        out->diffuse[3] = 1.0f;
     out->material[2] = material->occlusion;
     out->material[3] = 1.0f;
+}
+
+/* What it writes to its targets, unquantised. Flushing mode. */
+static inline void fragment_shade(const Pass *pass, const Setup *setup, const Primitive *primitive,
+                                  int x, int y, Texel *out)
+{
+    fragment_surface(pass, setup, primitive, x, y, out);
+    if (pass->layout.normal == FORMAT_RG16)
+        encode_octahedral(out->normal, out->normal);
+    if (!pass->view.draws[primitive->draw].transparent)
+        out->diffuse[3] = 1.0f;
 }
 
 /* From what the lighting pass fetches at a pixel to what it shades: undoes the encodings, in

@@ -13,6 +13,7 @@ static const struct {
     Result (*tile)(Pass *pass, Frame *frame);
 } methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {peel_render, tile_render},
+    [METHOD_WEIGHTED_AVERAGE] = {weighted_average_render, NULL},
 };
 
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)

@@ -17,6 +17,7 @@ typedef struct LayerStats {
     uint64_t lost_to_pass_limit; /* of those, never peeled: passes ended first */
     uint64_t repeated;           /* peeled again at the depth of the previous peel */
     uint64_t lost_to_overflow;   /* of those, for which a list had no room */
+    uint64_t overflowed;         /* pixels with a sum that left its format's range */
     uint64_t coverage_differs;   /* truth: fragments that exact, unsnapped coverage would change */
 } LayerStats;
 

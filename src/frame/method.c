@@ -6,6 +6,11 @@ static const MethodInfo methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {METHOD_PEEL, "peel",
                      "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
                      "deferred depth peeling, front to back", true, true},
+    [METHOD_WEIGHTED_AVERAGE] =
+        {METHOD_WEIGHTED_AVERAGE, "weighted-average",
+         "Bavoil, Myers, \"Order Independent Transparency with Dual Depth "
+         "Peeling\", 2008",
+         "every fragment has the pixel's average colour and alpha; one pass", false, false},
 };
 
 const MethodInfo *method_info(MethodId id)

@@ -11,6 +11,7 @@
 
 typedef enum MethodId {
     METHOD_PEEL = 0,
+    METHOD_WEIGHTED_AVERAGE,
     METHOD_COUNT
 } MethodId;
 /* How a surface is lit: the original's point lights, or one directional light as in the WebGPU

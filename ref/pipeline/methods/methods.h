@@ -6,5 +6,6 @@
 
 /* Each renders the whole frame. frame's images are allocated; trace may be NULL. */
 Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result weighted_average_render(Pass *pass, TraceSink *trace, Frame *frame);
 
 #endif
