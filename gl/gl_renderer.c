@@ -38,6 +38,9 @@ static void describe_driver(Frame *out)
 static Result (*const methods[METHOD_COUNT])(Passes *passes, Frame *out) = {
     [METHOD_PEEL] = gl_peel,
     [METHOD_WEIGHTED_AVERAGE] = gl_weighted_average,
+    [METHOD_WEIGHTED_SUM] = gl_weighted_sum,
+    [METHOD_WEIGHTED_BLENDED] = gl_weighted_blended,
+    [METHOD_PAINTER] = gl_painter,
 };
 
 /* Not inlined: see op_enter. */

@@ -46,14 +46,23 @@ static Result check_limits(const Context *context, const RenderDesc *desc)
     return RESULT_OK;
 }
 
+Result targets_reserve(Targets *targets, size_t bytes)
+{
+    targets->bytes += bytes;
+    if (targets->bytes <= targets->limit)
+        return RESULT_OK;
+    return result_fail(RESULT_NO_MEMORY,
+                       "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
+                       targets->width, targets->height, targets->bytes >> 10, targets->limit >> 10);
+}
+
 Result targets_texture(Targets *targets, PixelFormat format, GLuint *out)
 {
     *out = 0;
-    targets->bytes += format_pixel_bytes(format) * (size_t)targets->width * (size_t)targets->height;
-    if (targets->bytes > targets->limit)
-        return result_fail(
-            RESULT_NO_MEMORY, "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
-            targets->width, targets->height, targets->bytes >> 10, targets->limit >> 10);
+    Result result = targets_reserve(targets, format_pixel_bytes(format) * (size_t)targets->width *
+                                                 (size_t)targets->height);
+    if (result != RESULT_OK)
+        return result;
     gl.CreateTextures(GL_TEXTURE_2D, 1, out);
     gl.TextureStorage2D(*out, 1, formats_gl(format)->internal, targets->width, targets->height);
     gl.TextureParameteri(*out, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

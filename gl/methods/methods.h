@@ -8,5 +8,8 @@
  * counts in out->layers. With a trace, every buffer of it but "display" is read back. */
 Result gl_peel(Passes *passes, Frame *out);
 Result gl_weighted_average(Passes *passes, Frame *out);
+Result gl_weighted_sum(Passes *passes, Frame *out);
+Result gl_weighted_blended(Passes *passes, Frame *out);
+Result gl_painter(Passes *passes, Frame *out);
 
 #endif

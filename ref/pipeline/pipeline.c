@@ -14,6 +14,9 @@ static const struct {
 } methods[METHOD_COUNT] = {
     [METHOD_PEEL] = {peel_render, tile_render},
     [METHOD_WEIGHTED_AVERAGE] = {weighted_average_render, NULL},
+    [METHOD_WEIGHTED_SUM] = {weighted_sum_render, NULL},
+    [METHOD_WEIGHTED_BLENDED] = {weighted_blended_render, NULL},
+    [METHOD_PAINTER] = {painter_render, NULL},
 };
 
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)

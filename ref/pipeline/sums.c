@@ -1,9 +1,6 @@
 #include "ref/pipeline/sums.h"
 
 #include "number/blend.h"
-#include "ref/pipeline/stage.h"
-
-#include <math.h>
 #include <stdio.h>
 
 typedef struct Sums {
@@ -11,14 +8,9 @@ typedef struct Sums {
     Image sum, second; /* second has no pixels where the method has none */
 } Sums;
 
-typedef struct SumsVisit {
-    StageVisit draw; /* first: it is what a SetupVisit gets */
-    PassCounts *counts;
-} SumsVisit;
-
 /* ---- geometry pass ---- */
 
-static void add(const Stage *stage, size_t pixel, const SumsFragment *fragment)
+static void add(const Stage *stage, size_t pixel, const ShadedFragment *fragment)
 {
     const Sums *sums = stage->method;
     size_t bytes = format_pixel_bytes(sums->sum.format);
@@ -31,45 +23,15 @@ static void add(const Stage *stage, size_t pixel, const SumsFragment *fragment)
 
 static void visit_fragment(void *context, const Setup *setup, int x, int y)
 {
-    const SumsVisit *visit = context;
-    Stage *stage = visit->draw.stage;
-    const Pass *pass = stage->pass;
-    size_t pixel = stage_pixel(pass, x, y);
-    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
-    if (pass_hidden(pass, depth, stage_key(&stage->opaque.depth, pixel)))
-        return;
-    stage->fragments[pixel]++;
-    ShadeForm form = pass_shade_form(pass, true);
-    SumsFragment fragment;
-    Texel texel;
-    fragment_surface(pass, setup, visit->draw.primitive, x, y, &texel);
-    if (!shade_pixel(&pass->view, &form, &texel, fragment.source))
-        return;
-    fragment.distance = op_abs(texel.position[2]);
-    fragment.depth = depth.z;
-    visit->counts->shaded++;
-    add(stage, pixel, &fragment);
+    ShadedFragment fragment;
+    if (shaded_fragment(context, setup, x, y, &fragment))
+        add(((const ShadedVisit *)context)->draw.stage, fragment.pixel, &fragment);
 }
 
 static void geometry_tile(Stage *stage, uint32_t tile)
 {
-    SumsVisit visit = {{.stage = stage, .list = &stage->pass->geometry.transparent},
-                       &stage->tile_counts[tile]};
+    ShadedVisit visit = shaded_visit(stage, tile);
     stage_draw(&stage->pass->transparent_bins, tile, visit_fragment, &visit.draw);
-}
-
-/* Of every fragment that is not hidden something is blended, or nothing is visible: none is lost.
- */
-static void count(Stage *stage)
-{
-    uint64_t shaded = 0;
-    size_t pixels = (size_t)stage->pass->view.width * (size_t)stage->pass->view.height;
-    for (uint32_t tile = 0; tile < stage->pass->tile_count; tile++)
-        shaded += stage->tile_counts[tile].shaded;
-    for (size_t i = 0; i < pixels; i++)
-        stage->counts.peeled += stage->fragments[i];
-    stage->frame->peels = shaded > 0;
-    stage->frame->geometry_passes = 2;
 }
 
 static Result trace_sums(const Stage *stage)
@@ -128,7 +90,7 @@ static Result run(Stage *stage)
         result = stage_run(stage, geometry_tile);
     if (result != RESULT_OK)
         return result;
-    count(stage);
+    shaded_count(stage);
     result = trace_sums(stage);
     if (result == RESULT_OK)
         result = stage_run(stage, combine_tile);

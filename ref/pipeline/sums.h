@@ -11,14 +11,7 @@
 #ifndef PEEL_REF_SUMS_H
 #define PEEL_REF_SUMS_H
 
-#include "ref/pipeline/pass.h"
-
-/* A shaded fragment. */
-typedef struct SumsFragment {
-    float source[4]; /* premultiplied colour, alpha */
-    float distance;  /* |z| in view space */
-    float depth;     /* gl_FragCoord.z */
-} SumsFragment;
+#include "ref/pipeline/shaded.h"
 
 typedef struct SumsMethod {
     const char *name;   /* its buffers are traced as "name.sum" and "name.<second>", step 1 */
@@ -26,7 +19,7 @@ typedef struct SumsMethod {
     float start;        /* the second is cleared to this, the sum to 0 */
     void (*blend)(PixelFormat format, const float source[4], void *pixel); /* of the second */
     /* What a fragment writes. Flushing mode, as below. */
-    void (*write)(const RenderDesc *desc, const SumsFragment *fragment, float sum[4],
+    void (*write)(const RenderDesc *desc, const ShadedFragment *fragment, float sum[4],
                   float second[4]);
     /* The source of the under-blend; false: nothing is blended. */
     bool (*combine)(const float sum[4], float second, float source[4]);

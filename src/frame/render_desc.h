@@ -12,6 +12,9 @@
 typedef enum MethodId {
     METHOD_PEEL = 0,
     METHOD_WEIGHTED_AVERAGE,
+    METHOD_WEIGHTED_SUM,
+    METHOD_WEIGHTED_BLENDED,
+    METHOD_PAINTER,
     METHOD_COUNT
 } MethodId;
 /* How a surface is lit: the original's point lights, or one directional light as in the WebGPU

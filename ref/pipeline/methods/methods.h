@@ -7,5 +7,8 @@
 /* Each renders the whole frame. frame's images are allocated; trace may be NULL. */
 Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result weighted_average_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result weighted_sum_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result weighted_blended_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result painter_render(Pass *pass, TraceSink *trace, Frame *frame);
 
 #endif

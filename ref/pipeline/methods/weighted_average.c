@@ -16,7 +16,7 @@
 
 #include <string.h>
 
-static void write(const RenderDesc *desc, const SumsFragment *fragment, float sum[4],
+static void write(const RenderDesc *desc, const ShadedFragment *fragment, float sum[4],
                   float second[4])
 {
     (void)desc;
