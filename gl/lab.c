@@ -160,6 +160,19 @@ static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
     return result;
 }
 
+static void set_blend(ExperimentBlend blend)
+{
+    static const GLenum factors[BLEND_COUNT][4] = {
+        [BLEND_UNDER] = {GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA},
+        [BLEND_SEED] = {GL_DST_ALPHA, GL_ONE, GL_DST_ALPHA, GL_ONE},
+        [BLEND_OVER] = {GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA},
+        [BLEND_ADD] = {GL_ONE, GL_ONE, GL_ONE, GL_ONE},
+        [BLEND_PRODUCT] = {GL_ZERO, GL_ONE_MINUS_SRC_COLOR, GL_ZERO, GL_ONE_MINUS_SRC_COLOR},
+    };
+    const GLenum *f = factors[blend];
+    gl.BlendFuncSeparate(f[0], f[1], f[2], f[3]);
+}
+
 /* The destination is drawn first, without blending, so that it is what the format can store. */
 static Result blend(GlLab *lab, const Experiment *experiment, uint32_t *out)
 {
@@ -171,10 +184,7 @@ static Result blend(GlLab *lab, const Experiment *experiment, uint32_t *out)
     if (result != RESULT_OK)
         return result;
     draw_all();
-    if (experiment->blend == BLEND_SEED)
-        gl.BlendFunc(GL_DST_ALPHA, GL_ONE);
-    else
-        gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+    set_blend(experiment->blend);
     result = lab_use(lab, COPY_BODY);
     if (result == RESULT_OK) {
         gl.Enable(GL_BLEND);

@@ -77,11 +77,14 @@ static void depth_fetches(const Experiment *experiment, uint32_t *out)
 
 static void blends(const Experiment *experiment, uint32_t *out)
 {
+    static void (*const functions[BLEND_COUNT])(PixelFormat, const float source[4], void *) = {
+        [BLEND_UNDER] = blend_under, [BLEND_SEED] = blend_opaque_seed, [BLEND_OVER] = blend_over,
+        [BLEND_ADD] = blend_add,     [BLEND_PRODUCT] = blend_product,
+    };
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         unsigned char pixel[16];
         format_store(experiment->format, experiment->b[i], pixel);
-        (experiment->blend == BLEND_SEED ? blend_opaque_seed : blend_under)(
-            experiment->format, experiment->a[i], pixel);
+        functions[experiment->blend](experiment->format, experiment->a[i], pixel);
         put_codes(experiment->format, pixel, &out[4 * i]);
     }
 }

@@ -76,7 +76,11 @@ typedef enum ExperimentKind {
 
 typedef enum ExperimentBlend {
     BLEND_UNDER, /* number/blend.h */
-    BLEND_SEED
+    BLEND_SEED,
+    BLEND_OVER,
+    BLEND_ADD,
+    BLEND_PRODUCT,
+    BLEND_COUNT
 } ExperimentBlend;
 
 typedef enum RasterField {

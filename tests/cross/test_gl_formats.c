@@ -99,6 +99,28 @@ START_TEST(test_blend)
 }
 END_TEST
 
+START_TEST(test_blend_methods)
+{
+    check_colors((Experiment){.kind = EXPERIMENT_BLEND, .blend = (ExperimentBlend)_i},
+                 ACCUMULATIONS);
+}
+END_TEST
+
+/* Targets of one and two channels. */
+START_TEST(test_blend_narrow)
+{
+    static const PixelFormat narrow[] = {FORMAT_R32F, FORMAT_RG32F};
+    for (int i = 0; i < 2; i++)
+        for (int set = 0; set < INPUT_SETS; set++) {
+            Experiment experiment = {.kind = EXPERIMENT_BLEND,
+                                     .blend = _i ? BLEND_PRODUCT : BLEND_ADD,
+                                     .format = narrow[i]};
+            fill(narrow[i], set);
+            labs_assert_equal(&experiment, labs_float, format_info(narrow[i])->name, set);
+        }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("formats");
@@ -111,6 +133,8 @@ int main(void)
     tcase_add_test(tcase, test_depth);
     tcase_add_test(tcase, test_depth24_order);
     tcase_add_test(tcase, test_blend);
+    tcase_add_loop_test(tcase, test_blend_methods, BLEND_OVER, BLEND_COUNT);
+    tcase_add_loop_test(tcase, test_blend_narrow, 0, 2);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }
