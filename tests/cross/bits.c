@@ -39,20 +39,36 @@ static void add_frames(const Frame *ref, const Frame *driver, Bits *out)
 {
     size_t pixels = (size_t)ref->final.width * (size_t)ref->final.height;
     bool same = ref->peels == driver->peels && ref->layers.repeated == driver->layers.repeated &&
+                ref->layers.overflowed == driver->layers.overflowed &&
+                ref->geometry_passes == driver->geometry_passes &&
                 memcmp(ref->final.pixels, driver->final.pixels, pixels * 16) == 0;
     out->differing += !same;
     if (!same && !*out->difference)
         snprintf(out->difference, sizeof out->difference,
-                 "%d peels of ref and %d of gl, %llu and %llu layers repeated, or the final image",
+                 "%d peels of ref and %d of gl, %llu and %llu layers repeated, %llu and %llu sums "
+                 "overflowed, %d and %d geometry passes, or the final image",
                  ref->peels, driver->peels, (unsigned long long)ref->layers.repeated,
-                 (unsigned long long)driver->layers.repeated);
+                 (unsigned long long)driver->layers.repeated,
+                 (unsigned long long)ref->layers.overflowed,
+                 (unsigned long long)driver->layers.overflowed, ref->geometry_passes,
+                 driver->geometry_passes);
 }
 
-/* The accumulation of each peel and the last, the display, depth and the stored colours. */
+/* The opaque depth and stored colours, the last accumulation and the display; and the method's:
+ * the same colours and the accumulation of each peel, or its sums. */
 static size_t expected_buffers(const RenderDesc *desc, int peels)
 {
     size_t stored = render_desc_layout(desc).position == FORMAT_NONE ? 4 : 5;
-    return stored + (stored + 1) * (size_t)peels + 2;
+    switch (desc->method) {
+    case METHOD_WEIGHTED_SUM:
+    case METHOD_PAINTER:
+        return stored + 1 + 2;
+    case METHOD_WEIGHTED_AVERAGE:
+    case METHOD_WEIGHTED_BLENDED:
+        return stored + 2 + 2;
+    default:
+        return stored + (stored + 1) * (size_t)peels + 2;
+    }
 }
 
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)
