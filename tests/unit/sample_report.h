@@ -129,7 +129,8 @@ static inline void make_report(void)
     make_frames();
     name_buffers();
     make_pairs();
-    report.structure.layers = (LayerStats){PEELS, 345678, 9, 0, 0, 77};
+    report.structure.layers =
+        (LayerStats){.max = PEELS, .fragments = 345678, .lost_to_ties = 9, .coverage_differs = 77};
     report.structure.order_inversions = 3;
     report.structure.same_scene = true;
     for (int i = 0; i < PEELS; i++) {
