@@ -1,6 +1,7 @@
 #include "frame/sort.h"
 
 #include "base/memory.h"
+#include "number/op.h"
 
 #include <stdlib.h>
 
@@ -72,7 +73,9 @@ static void join(const Item *items, size_t count, Sort *out)
     }
 }
 
-Result sort_far_to_near(const Scene *scene, const View *view, SortUnit unit, Sort *out)
+/* Not inlined: see op_suspend. */
+static __attribute__((noinline)) Result sort(const Scene *scene, const View *view, SortUnit unit,
+                                             Sort *out)
 {
     size_t count = item_count(scene, view, unit);
     Item *items = memory_array(count, sizeof *items);
@@ -87,6 +90,15 @@ Result sort_far_to_near(const Scene *scene, const View *view, SortUnit unit, Sor
     join(items, count, out);
     free(items);
     return RESULT_OK;
+}
+
+Result sort_far_to_near(const Scene *scene, const View *view, SortUnit unit, Sort *out)
+{
+    /* In flushing mode a denormal float would be 0 as a double, too. */
+    uint32_t saved = op_suspend();
+    Result result = sort(scene, view, unit, out);
+    op_leave(saved);
+    return result;
 }
 
 void sort_free(Sort *sort)

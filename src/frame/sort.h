@@ -19,7 +19,8 @@ typedef struct Sort {
  * first; of equal depths the smaller primitive id is first, so the order does not depend on the
  * order of the draws. SORT_TRIANGLES: a triangle's centroid. SORT_OBJECTS: a draw's, the mean of
  * its triangles' corners, and the draw's triangles stay together, in their order. Depths are
- * computed in double from the view's float matrices and the meshes' floats. NO_MEMORY is possible.
+ * computed in double from the view's float matrices and the meshes' floats, in flushing mode or not
+ * the same. NO_MEMORY is possible.
  * The caller frees with sort_free. */
 Result sort_far_to_near(const Scene *scene, const View *view, SortUnit unit, Sort *out);
 void sort_free(Sort *sort); /* leaves an empty one */

@@ -3,6 +3,7 @@
 
 #include "../cross/soup.h"
 #include "frame/sort.h"
+#include "number/op.h"
 
 #include <math.h>
 
@@ -109,12 +110,44 @@ START_TEST(test_draw_order)
 }
 END_TEST
 
+/* A renderer may call it in flushing mode. */
+START_TEST(test_flushing)
+{
+    const RenderDesc desc = {.width = 64, .height = 64};
+    View view;
+    Sort plain, flushed, nothing;
+    make(3, &desc, SORT_TRIANGLES, &view, &plain);
+    sort_free(&plain);
+    for (int m = 0; m < SOUP_MESHES; m++)
+        for (size_t i = 0; i < 9 * (size_t)soup.meshes[m].triangle_count; i++)
+            soup.position[m][i] *= 0x1p-130f; /* denormal */
+    for (size_t i = 0; i < view.draw_count; i++)
+        view.draws[i].model_view[14] = 0.0f;
+    ck_assert_int_eq(sort_far_to_near(&soup.scene, &view, SORT_TRIANGLES, &plain), RESULT_OK);
+    uint32_t saved = op_enter();
+    Result result = sort_far_to_near(&soup.scene, &view, SORT_TRIANGLES, &flushed);
+    op_leave(saved);
+    ck_assert_int_eq(result, RESULT_OK);
+    ck_assert_uint_eq(plain.count, flushed.count);
+    ck_assert_mem_eq(plain.runs, flushed.runs, plain.count * sizeof *plain.runs);
+    for (int m = 0; m < SOUP_MESHES; m++)
+        memset(soup.position[m], 0, sizeof soup.position[m]);
+    ck_assert_int_eq(sort_far_to_near(&soup.scene, &view, SORT_TRIANGLES, &nothing), RESULT_OK);
+    ck_assert_uint_ne(plain.count, nothing.count);
+    sort_free(&plain);
+    sort_free(&flushed);
+    sort_free(&nothing);
+    view_free(&view);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("sort");
     TCase *tcase = tcase_create("sort");
     tcase_add_loop_test(tcase, test_order, SORT_OBJECTS, SORT_TRIANGLES + 1);
     tcase_add_loop_test(tcase, test_draw_order, SORT_OBJECTS, SORT_TRIANGLES + 1);
+    tcase_add_test(tcase, test_flushing);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }
