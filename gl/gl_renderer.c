@@ -42,6 +42,10 @@ static Result (*const methods[METHOD_COUNT])(Passes *passes, Frame *out) = {
     [METHOD_PEEL_ID] = gl_peel_id,
     [METHOD_LINKED_LIST] = gl_linked_list,
     [METHOD_FORWARD] = gl_forward,
+    [METHOD_WEIGHTED_AVERAGE] = gl_weighted_average,
+    [METHOD_WEIGHTED_SUM] = gl_weighted_sum,
+    [METHOD_WEIGHTED_BLENDED] = gl_weighted_blended,
+    [METHOD_PAINTER] = gl_painter,
 };
 
 /* Not inlined: see op_enter. */

@@ -258,14 +258,8 @@ static void bind_textures(const Passes *passes, GLuint program, const Draw *item
                         item->masked ? material->alpha_cutoff : 0.0f);
 }
 
-void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, uint32_t first,
-                       uint32_t count)
+void passes_use_draw(const Passes *passes, GLuint program, const Draw *draw)
 {
-    const MeshRange *range = &passes->meshes.ranges[draw->mesh];
-    uint32_t triangles = range->index_count / 3;
-    if (first >= triangles)
-        return;
-    count = count < triangles - first ? count : triangles - first;
     const Material *material = &passes->scene->materials[draw->material];
     const float surface[3] = {material->roughness, material->metallic, material->occlusion};
     gl.ProgramUniformMatrix4fv(program, UNIFORM_MODEL_VIEW, 1, GL_FALSE, draw->model_view);
@@ -275,9 +269,25 @@ void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, u
     gl.ProgramUniform1i(program, UNIFORM_CULL_BACK, draw->cull_back);
     gl.ProgramUniform1i(program, UNIFORM_FLIPPED, draw->flipped);
     bind_textures(passes, program, draw);
+}
+
+void passes_draw_triangles(const Passes *passes, const Draw *draw, uint32_t first, uint32_t count)
+{
+    const MeshRange *range = &passes->meshes.ranges[draw->mesh];
+    uint32_t triangles = range->index_count / 3;
+    if (first >= triangles)
+        return;
+    count = count < triangles - first ? count : triangles - first;
     size_t at = range->first_index + 3 * (size_t)first;
     gl.DrawElementsBaseVertex(GL_TRIANGLES, (GLsizei)(3 * count), GL_UNSIGNED_INT,
                               (const void *)(at * sizeof(uint32_t)), range->base_vertex);
+}
+
+void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, uint32_t first,
+                       uint32_t count)
+{
+    passes_use_draw(passes, program, draw);
+    passes_draw_triangles(passes, draw, first, count);
 }
 
 void passes_draw_list(const Passes *passes, GLuint program, bool transparent)

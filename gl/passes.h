@@ -66,6 +66,9 @@ Result passes_draw_counted(const Passes *passes, GLuint program, bool transparen
 /* One draw; its index range in triangles, 0 and UINT32_MAX for all. */
 void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, uint32_t first,
                        uint32_t count);
+/* Its two halves: the uniforms and textures of a draw, and triangles of the draw that has them. */
+void passes_use_draw(const Passes *passes, GLuint program, const Draw *draw);
+void passes_draw_triangles(const Passes *passes, const Draw *draw, uint32_t first, uint32_t count);
 /* program over every pixel of framebuffer. */
 void passes_fullscreen(const Passes *passes, GLuint program, GLuint framebuffer);
 

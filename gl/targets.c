@@ -47,20 +47,20 @@ static Result check_limits(const Context *context, const RenderDesc *desc)
     return RESULT_OK;
 }
 
-static Result reserve(Targets *targets, size_t bytes)
+Result targets_reserve(Targets *targets, size_t bytes)
 {
     targets->bytes += bytes;
-    if (targets->bytes > targets->limit)
-        return result_fail(
-            RESULT_NO_MEMORY, "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
-            targets->width, targets->height, targets->bytes >> 10, targets->limit >> 10);
-    return RESULT_OK;
+    if (targets->bytes <= targets->limit)
+        return RESULT_OK;
+    return result_fail(RESULT_NO_MEMORY,
+                       "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
+                       targets->width, targets->height, targets->bytes >> 10, targets->limit >> 10);
 }
 
 Result targets_buffer(Targets *targets, size_t bytes, GLuint *out)
 {
     *out = 0;
-    Result result = reserve(targets, bytes);
+    Result result = targets_reserve(targets, bytes);
     if (result != RESULT_OK)
         return result;
     gl.CreateBuffers(1, out);
@@ -79,8 +79,8 @@ void targets_free_buffer(Targets *targets, size_t bytes, GLuint *buffer)
 Result targets_texture(Targets *targets, PixelFormat format, GLuint *out)
 {
     *out = 0;
-    Result result = reserve(targets, format_pixel_bytes(format) * (size_t)targets->width *
-                                         (size_t)targets->height);
+    Result result = targets_reserve(targets, format_pixel_bytes(format) * (size_t)targets->width *
+                                                 (size_t)targets->height);
     if (result != RESULT_OK)
         return result;
     gl.CreateTextures(GL_TEXTURE_2D, 1, out);

@@ -39,6 +39,9 @@ typedef struct Targets {
 Result targets_create(Context *context, const RenderDesc *desc, Targets *out);
 void targets_destroy(Targets *targets); /* leaves an empty one */
 
+/* Accounts for bytes about to be allocated; NO_MEMORY and a message past the limit. */
+Result targets_reserve(Targets *targets, size_t bytes);
+
 /* A texture of the frame's size. NO_MEMORY, and *out is 0, when it passes the limit. The caller
  * deletes it. */
 Result targets_texture(Targets *targets, PixelFormat format, GLuint *out);

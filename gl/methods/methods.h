@@ -12,5 +12,9 @@ Result gl_peel(Passes *passes, Frame *out);
 Result gl_peel_id(Passes *passes, Frame *out);
 Result gl_linked_list(Passes *passes, Frame *out);
 Result gl_forward(Passes *passes, Frame *out);
+Result gl_weighted_average(Passes *passes, Frame *out);
+Result gl_weighted_sum(Passes *passes, Frame *out);
+Result gl_weighted_blended(Passes *passes, Frame *out);
+Result gl_painter(Passes *passes, Frame *out);
 
 #endif

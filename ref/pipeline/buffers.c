@@ -57,20 +57,26 @@ void gbuffer_clear(GBuffer *buffers, DepthRange range)
     memset(buffers->primitive.pixels, 0xff, pixels * sizeof(uint32_t));
 }
 
+/* The pixel of an image, or NULL of one that is not stored. */
+static void *pixel_of(const Image *image, int x, int y)
+{
+    return image->pixels ? image_pixel(image, x, y) : NULL;
+}
+
 void gbuffer_store(GBuffer *buffers, int x, int y, const Texel *texel)
 {
-    format_store(buffers->normal.format, texel->normal, image_pixel(&buffers->normal, x, y));
-    format_store(buffers->position.format, texel->position, image_pixel(&buffers->position, x, y));
-    format_store(buffers->diffuse.format, texel->diffuse, image_pixel(&buffers->diffuse, x, y));
-    format_store(buffers->material.format, texel->material, image_pixel(&buffers->material, x, y));
+    format_store(buffers->normal.format, texel->normal, pixel_of(&buffers->normal, x, y));
+    format_store(buffers->position.format, texel->position, pixel_of(&buffers->position, x, y));
+    format_store(buffers->diffuse.format, texel->diffuse, pixel_of(&buffers->diffuse, x, y));
+    format_store(buffers->material.format, texel->material, pixel_of(&buffers->material, x, y));
 }
 
 void gbuffer_load(const GBuffer *buffers, int x, int y, Texel *out)
 {
-    format_fetch(buffers->normal.format, image_pixel(&buffers->normal, x, y), out->normal);
-    format_fetch(buffers->position.format, image_pixel(&buffers->position, x, y), out->position);
-    format_fetch(buffers->diffuse.format, image_pixel(&buffers->diffuse, x, y), out->diffuse);
-    format_fetch(buffers->material.format, image_pixel(&buffers->material, x, y), out->material);
+    format_fetch(buffers->normal.format, pixel_of(&buffers->normal, x, y), out->normal);
+    format_fetch(buffers->position.format, pixel_of(&buffers->position, x, y), out->position);
+    format_fetch(buffers->diffuse.format, pixel_of(&buffers->diffuse, x, y), out->diffuse);
+    format_fetch(buffers->material.format, pixel_of(&buffers->material, x, y), out->material);
 }
 
 static void quantise(PixelFormat format, float value[4])

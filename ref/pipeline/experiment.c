@@ -77,9 +77,11 @@ static void depth_fetches(const Experiment *experiment, uint32_t *out)
 
 static void blends(const Experiment *experiment, uint32_t *out)
 {
-    static void (*const functions[BLEND_COUNT])(PixelFormat, const float[4], void *) = {
-        [BLEND_UNDER] = blend_under, [BLEND_SEED] = blend_opaque_seed, [BLEND_OVER] = blend_over,
-        [BLEND_MAX] = blend_max,     [BLEND_REPLACE] = blend_replace,  [BLEND_KEEP] = blend_keep,
+    static void (*const functions[BLEND_COUNT])(PixelFormat, const float source[4], void *) = {
+        [BLEND_UNDER] = blend_under,     [BLEND_SEED] = blend_opaque_seed,
+        [BLEND_OVER] = blend_over,       [BLEND_ADD] = blend_add,
+        [BLEND_PRODUCT] = blend_product, [BLEND_MAX] = blend_max,
+        [BLEND_REPLACE] = blend_replace, [BLEND_KEEP] = blend_keep,
     };
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         unsigned char pixel[16];

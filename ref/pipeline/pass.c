@@ -142,6 +142,7 @@ void pass_counts_add(PassCounts *sum, const PassCounts *tile)
     sum->peeled += tile->peeled;
     sum->repeated += tile->repeated;
     sum->shaded += tile->shaded;
+    sum->overflowed += tile->overflowed;
     sum->remaining += tile->remaining;
     sum->residual_pixels += tile->residual_pixels;
     sum->residual_max =
@@ -153,6 +154,7 @@ void pass_counts_report(const PassCounts *counts, Frame *frame)
     frame->layers.max = counts->max;
     frame->layers.fragments = counts->fragments;
     frame->layers.repeated = counts->repeated;
+    frame->layers.overflowed = counts->overflowed;
     frame->fragments_shaded = counts->shaded;
     frame->layers.lost_to_pass_limit = counts->remaining;
     frame->layers.lost_to_ties =

@@ -107,7 +107,7 @@ static inline bool pass_depth_test(const Pass *pass, uint32_t key, uint32_t stor
 /* Counts of one tile or of the frame; see LayerStats. */
 typedef struct PassCounts {
     uint32_t max;
-    uint64_t fragments, peeled, repeated, remaining, shaded;
+    uint64_t fragments, peeled, repeated, remaining, shaded, overflowed;
     uint64_t residual_pixels;
     float residual_max;
 } PassCounts;

@@ -18,6 +18,10 @@ static const struct {
     [METHOD_PEEL_ID] = {peel_id_render, NULL},
     [METHOD_LINKED_LIST] = {linked_list_render, NULL},
     [METHOD_FORWARD] = {forward_render, NULL},
+    [METHOD_WEIGHTED_AVERAGE] = {weighted_average_render, NULL},
+    [METHOD_WEIGHTED_SUM] = {weighted_sum_render, NULL},
+    [METHOD_WEIGHTED_BLENDED] = {weighted_blended_render, NULL},
+    [METHOD_PAINTER] = {painter_render, NULL},
 };
 
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)

@@ -78,6 +78,8 @@ typedef enum ExperimentBlend {
     BLEND_UNDER, /* number/blend.h */
     BLEND_SEED,
     BLEND_OVER,
+    BLEND_ADD,
+    BLEND_PRODUCT,
     BLEND_MAX,
     BLEND_REPLACE,
     BLEND_KEEP,

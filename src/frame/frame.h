@@ -18,6 +18,7 @@ typedef struct LayerStats {
     uint64_t repeated;           /* peeled again at the depth of the previous peel */
     uint64_t coverage_differs;   /* truth: fragments that exact, unsnapped coverage would change */
     uint64_t lost_to_overflow;   /* a list had no room; some may be behind the opaque depth */
+    uint64_t overflowed;         /* pixels with a sum that left its format's range */
 } LayerStats;
 
 typedef struct Frame {

@@ -16,6 +16,10 @@ typedef enum MethodId {
     METHOD_FORWARD,
     METHOD_FORWARD_DUAL,
     METHOD_LINKED_LIST,
+    METHOD_WEIGHTED_AVERAGE,
+    METHOD_WEIGHTED_SUM,
+    METHOD_WEIGHTED_BLENDED,
+    METHOD_PAINTER,
     METHOD_COUNT
 } MethodId;
 /* How a surface is lit: the original's point lights, or one directional light as in the WebGPU

@@ -4,6 +4,9 @@
  * peel.K.depth peel.K.normal peel.K.position peel.K.diffuse peel.K.material peel.K.accum (K from
  * 0; accum after blending peel K), accum (after the opaque lighting pass), display.
  * peel.K.id (FORMAT_R32UI): the id buffer of the methods peel-id and linked-list, which gl has too.
+ * Methods that do not peel have, as step 1, instead of peel.K.…: weighted-average.sum and .count,
+ * weighted-sum.sum, weighted-blended.sum and .product (sums RGBA32F or RGBA16F, count and product
+ * R32F), painter.layers (the accumulation before the opaque surfaces).
  * opaque.primitive and peel.K.primitive (FORMAT_R32UI, UINT32_MAX where there is no fragment) tell
  * which triangle a fragment came from; ref and truth give them, gl does not.
  * Of dual and forward-dual, METHOD their name: METHOD.first.depth, METHOD.K.depth, the min-max

@@ -21,7 +21,7 @@ const char *exr_channel_name(PixelFormat format, int index)
     static const char *const colors[] = {"R", "G", "B", "A"};
     if (format_info(format)->channels > 1)
         return colors[index];
-    return format == FORMAT_R32UI ? "ID" : "Z";
+    return format == FORMAT_R32UI ? "ID" : format == FORMAT_R32F ? "R" : "Z";
 }
 
 int exr_channel_index(PixelFormat format, const char *name)

@@ -36,6 +36,7 @@ typedef enum Equation {
     EQUATION_REPLACE, /* s·(source alpha) + d·(1 − source alpha) */
     EQUATION_KEEP,    /* s·(1 − T) + d */
     EQUATION_ADD,
+    EQUATION_PRODUCT, /* d·(1 − s) */
     EQUATION_MAX
 } Equation;
 
@@ -47,6 +48,8 @@ static uint32_t unorm_equation(Equation equation, int bits, uint32_t s, uint32_t
         return s > d ? s : d;
     if (equation == EQUATION_UNDER)
         sum = multiply(bits, s, transmittance) + d;
+    if (equation == EQUATION_PRODUCT)
+        return multiply(bits, d, most - s);
     if (equation == EQUATION_OVER)
         sum = s + multiply(bits, d, most - source_alpha);
     if (equation == EQUATION_REPLACE)
@@ -248,4 +251,22 @@ void blend_keep(PixelFormat format, const float source[4], void *pixel)
     float *dst = pixel, room = op_sub(1.0f, dst[3]);
     for (int i = 0; i < 4; i++)
         dst[i] = op_canonical(op_add(op_mul(source[i], room), dst[i]));
+}
+
+static __attribute__((noinline)) void product16f(const float source[4], float dst[4])
+{
+    for (int i = 0; i < 4; i++)
+        dst[i] = dst[i] * (1.0f - source[i]);
+}
+
+void blend_product(PixelFormat format, const float source[4], void *pixel)
+{
+    float *dst = pixel;
+    if (format == FORMAT_RGBA16F)
+        half_blend(product16f, source, pixel);
+    else if (format_info(format)->kind == KIND_UNORM)
+        unorm_blend(format, EQUATION_PRODUCT, false, source, pixel);
+    else
+        for (int i = 0; i < format_info(format)->channels; i++)
+            dst[i] = op_canonical(op_mul(dst[i], op_sub(1.0f, source[i])));
 }

@@ -23,6 +23,9 @@ void blend_over(PixelFormat format, const float source[4], void *pixel);
 /* glBlendFunc(ONE, ONE): all channels of the format are summed. */
 void blend_add(PixelFormat format, const float source[4], void *pixel);
 
+/* glBlendFunc(ZERO, ONE_MINUS_SRC_COLOR): every channel of pixel times 1 less the source's. */
+void blend_product(PixelFormat format, const float source[4], void *pixel);
+
 /* glBlendEquation(GL_MAX): the greater of each channel; the pixel's where they are equal or one is
  * NaN. */
 void blend_max(PixelFormat format, const float source[4], void *pixel);

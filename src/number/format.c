@@ -15,6 +15,7 @@ static const FormatInfo infos[FORMAT_COUNT + 1] = {
     [FORMAT_D24] = {"d24", KIND_UNORM, 1, 4, 16777215},
     [FORMAT_D16] = {"d16", KIND_UNORM, 1, 4, 65535},
     [FORMAT_R32UI] = {"r32ui", KIND_UINT, 1, 4, 0},
+    [FORMAT_R32F] = {"r32f", KIND_FLOAT, 1, 4, 0},
     [FORMAT_NONE] = {"none", KIND_UINT, 0, 0, 0},
 };
 
@@ -66,7 +67,7 @@ void format_store(PixelFormat format, const float value[4], void *pixel)
 {
     const FormatInfo *info = &infos[format];
     uint8_t *bytes = pixel;
-    assert(info->channels != 1);
+    assert(info->channels != 1 || format == FORMAT_R32F);
     for (int i = 0; i < info->channels; i++) {
         uint16_t word;
         if (info->kind == KIND_FLOAT) {
@@ -85,7 +86,7 @@ void format_fetch(PixelFormat format, const void *pixel, float value[4])
 {
     const FormatInfo *info = &infos[format];
     const uint8_t *bytes = pixel;
-    assert(info->channels != 1);
+    assert(info->channels != 1 || format == FORMAT_R32F);
     for (int i = info->channels; i < 4; i++)
         value[i] = i == 3 ? 1.0f : 0.0f;
     for (int i = 0; i < info->channels; i++) {
@@ -212,4 +213,18 @@ uint32_t ulp_distance_half(uint16_t a, uint16_t b)
     if (a_nan || b_nan)
         return a_nan && b_nan ? 0 : UINT32_MAX;
     return distance(ordered(a & 0x7fffu, a >> 15), ordered(b & 0x7fffu, b >> 15));
+}
+
+bool format_overflowed(PixelFormat format, const void *pixel)
+{
+    const FormatInfo *info = &infos[format];
+    bool overflowed = false;
+    for (int i = 0; i < info->channels; i++) {
+        uint32_t bits = format_bits(format, pixel, i);
+        if (info->kind == KIND_HALF)
+            overflowed |= (bits & 0x7fffu) >= 0x7bffu;
+        if (info->kind == KIND_FLOAT)
+            overflowed |= (bits & 0x7f800000u) == 0x7f800000u;
+    }
+    return overflowed;
 }

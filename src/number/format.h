@@ -5,6 +5,7 @@
 #ifndef PEEL_NUMBER_FORMAT_H
 #define PEEL_NUMBER_FORMAT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -19,6 +20,7 @@ typedef enum PixelFormat {
     FORMAT_D24,   /* window depth as a 24-bit unorm in a uint32_t */
     FORMAT_D16,   /* as a 16-bit unorm, in a uint32_t too */
     FORMAT_R32UI, /* an index; UINT32_MAX is none */
+    FORMAT_R32F,
     FORMAT_COUNT,
     FORMAT_NONE = FORMAT_COUNT /* of a buffer that is not stored: no bytes */
 } PixelFormat;
@@ -81,5 +83,9 @@ float depth16_to_float(uint32_t depth); /* a texel fetch: (float)u · (float)(1/
  * are NaN; +0 and −0 are 1 apart; UINT32_MAX between a NaN and a number. */
 uint32_t ulp_distance(float a, float b);
 uint32_t ulp_distance_half(uint16_t a, uint16_t b);
+
+/* Whether a float or half channel of the pixel is where sums end that overflow: not finite, or as a
+ * half ±65504, which truncation does not go beyond. */
+bool format_overflowed(PixelFormat format, const void *pixel);
 
 #endif

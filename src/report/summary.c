@@ -260,6 +260,7 @@ void summary_layers(const Threeway *report, SummaryLayer out[SUMMARY_LAYERS])
          layers->coverage_differs},
         {"opaque_flips", "pixels whose nearest opaque triangle differs", structure->opaque_flips},
         {"repeated", "peeled again at the depth of the previous peel", layers->repeated},
+        {"overflowed", "pixels with a sum that left its format's range", layers->overflowed},
         {"set_differs", "fragments that only one side has, ties and limit apart",
          structure->set_differs},
     };

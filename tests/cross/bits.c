@@ -44,32 +44,54 @@ static void add_frames(const Frame *ref, const Frame *driver, Bits *out)
     bool same = passes && ref->peels == driver->peels && ref->nodes == driver->nodes &&
                 ref->node_bytes == driver->node_bytes &&
                 ref->layers.repeated == driver->layers.repeated &&
+                ref->layers.overflowed == driver->layers.overflowed &&
                 memcmp(ref->final.pixels, driver->final.pixels, pixels * 16) == 0;
     out->differing += !same;
     if (!same && !*out->difference)
         snprintf(out->difference, sizeof out->difference,
                  "%d peels of ref and %d of gl, %d and %d geometry passes, %llu and %llu layers "
-                 "repeated, or the final image",
+                 "repeated, %llu and %llu sums overflowed, or the final image",
                  ref->peels, driver->peels, ref->geometry_passes, driver->geometry_passes,
                  (unsigned long long)ref->layers.repeated,
-                 (unsigned long long)driver->layers.repeated);
+                 (unsigned long long)driver->layers.repeated,
+                 (unsigned long long)ref->layers.overflowed,
+                 (unsigned long long)driver->layers.overflowed);
 }
 
-/* Depth and the stored colours, of the opaque pass and of each peel; the accumulation of each peel
- * and the last, the display. Other methods have what their headers say. */
+/* Depth and the stored colours of the opaque pass, the last accumulation and the display; and what
+ * the method adds for each peel, or at once: the same and its accumulation, or what its header
+ * says. */
 static size_t expected_buffers(const RenderDesc *desc, int peels)
 {
     GBufferLayout layout = render_desc_layout(desc);
     const PixelFormat colors[] = {layout.normal, layout.position, layout.diffuse, layout.material};
-    size_t stored = 1, ids = desc->method == METHOD_PEEL_ID || desc->method == METHOD_LINKED_LIST;
+    size_t stored = 1;
     for (int i = 0; i < 4; i++)
         stored += colors[i] != FORMAT_NONE;
-    size_t first = 0, peel = stored + ids + 1;
-    if (desc->method == METHOD_DUAL)
-        first = 1, peel = 9;
-    if (desc->method == METHOD_FORWARD_DUAL)
-        first = 1, peel = 4;
-    return stored + first + peel * (size_t)peels + 2;
+    size_t others = 0, peel = stored + 1;
+    switch (desc->method) {
+    case METHOD_DUAL:
+        others = 1, peel = 9;
+        break;
+    case METHOD_FORWARD_DUAL:
+        others = 1, peel = 4;
+        break;
+    case METHOD_PEEL_ID:
+    case METHOD_LINKED_LIST:
+        peel++;
+        break;
+    case METHOD_WEIGHTED_SUM:
+    case METHOD_PAINTER:
+        others = 1, peel = 0;
+        break;
+    case METHOD_WEIGHTED_AVERAGE:
+    case METHOD_WEIGHTED_BLENDED:
+        others = 2, peel = 0;
+        break;
+    default:
+        break;
+    }
+    return stored + others + peel * (size_t)peels + 2;
 }
 
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)

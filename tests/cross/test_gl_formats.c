@@ -99,14 +99,18 @@ START_TEST(test_blend)
 }
 END_TEST
 
-START_TEST(test_blend_two_channels)
+/* Targets of one and two channels. */
+START_TEST(test_blend_narrow)
 {
-    for (int set = 0; set < INPUT_SETS; set++) {
-        Experiment experiment = {
-            .kind = EXPERIMENT_BLEND, .format = FORMAT_RG32F, .blend = BLEND_MAX};
-        fill(FORMAT_RG32F, set);
-        labs_assert_equal(&experiment, labs_float, "rg32f", set);
-    }
+    static const PixelFormat narrow[] = {FORMAT_R32F, FORMAT_RG32F};
+    static const ExperimentBlend blends[] = {BLEND_ADD, BLEND_PRODUCT, BLEND_MAX};
+    for (int i = 0; i < 2; i++)
+        for (int set = 0; set < INPUT_SETS; set++) {
+            Experiment experiment = {
+                .kind = EXPERIMENT_BLEND, .blend = blends[_i], .format = narrow[i]};
+            fill(narrow[i], set);
+            labs_assert_equal(&experiment, labs_float, format_info(narrow[i])->name, set);
+        }
 }
 END_TEST
 
@@ -122,7 +126,7 @@ int main(void)
     tcase_add_test(tcase, test_depth);
     tcase_add_test(tcase, test_depth24_order);
     tcase_add_loop_test(tcase, test_blend, 0, BLEND_COUNT);
-    tcase_add_test(tcase, test_blend_two_channels);
+    tcase_add_loop_test(tcase, test_blend_narrow, 0, 3);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

@@ -216,6 +216,92 @@ START_TEST(test_over_and_max_by_hand)
 }
 END_TEST
 
+/* ---- over, add, product -----------------------------------------------------------------------
+ */
+
+typedef void (*Blend)(PixelFormat format, const float source[4], void *pixel);
+
+/* A pixel of the format, from and to numbers. */
+static void check_blend(Blend blend, PixelFormat format, const float source[4],
+                        const float before[4], const float expected[4])
+{
+    unsigned char pixel[16];
+    float got[4];
+    format_store(format, before, pixel);
+    blend(format, source, pixel);
+    format_fetch(format, pixel, got);
+    for (int c = 0; c < format_info(format)->channels; c++)
+        ck_assert_msg(op_bits(got[c]) == op_bits(expected[c]), "%s, channel %d: %a, expected %a",
+                      format_info(format)->name, c, (double)got[c], (double)expected[c]);
+}
+
+/* Exact in floats and halves. */
+START_TEST(test_others_by_hand)
+{
+    static const PixelFormat formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F};
+    const float source[4] = {0.5f, 2.0f, -1.0f, 0.25f}, before[4] = {1.0f, 0.5f, 4.0f, 0.5f};
+    for (int i = 0; i < 2; i++) {
+        check_blend(blend_over, formats[i], source, before,
+                    (float[4]){1.25f, 2.375f, 2.0f, 0.375f});
+        check_blend(blend_add, formats[i], source, before, (float[4]){1.5f, 2.5f, 3.0f, 0.75f});
+        check_blend(blend_product, formats[i], source, before,
+                    (float[4]){0.5f, -0.5f, 8.0f, 0.375f});
+    }
+    check_blend(blend_add, FORMAT_R32F, source, before, (float[4]){1.5f});
+    check_blend(blend_product, FORMAT_R32F, source, before, (float[4]){0.5f});
+    check_blend(blend_add, FORMAT_RG32F, source, before, (float[4]){1.5f, 2.5f});
+}
+END_TEST
+
+START_TEST(test_others_in_codes)
+{
+    /* 51/255 = 0.2 and so on; 153·(255 − 102)/255 = 91.8 */
+    const float source[4] = {51 / 255.0f, 1.0f, 0.0f, 102 / 255.0f};
+    const uint8_t before[4] = {153, 204, 255, 153};
+    const struct {
+        Blend blend;
+        uint8_t expected[4];
+    } rows[] = {
+        {blend_over, {51 + 92, 255, 153, 92}},
+        {blend_add, {204, 255, 255, 255}},
+        {blend_product, {122, 0, 255, 92}}, /* 153·204/255 = 122.4 */
+    };
+    for (int i = 0; i < 3; i++) {
+        uint8_t pixel[4];
+        memcpy(pixel, before, sizeof pixel);
+        rows[i].blend(FORMAT_RGBA8, source, pixel);
+        for (int c = 0; c < 4; c++)
+            ck_assert_msg(pixel[c] == rows[i].expected[c], "blend %d, channel %d: %d", i, c,
+                          pixel[c]);
+    }
+    uint16_t wide[4] = {65535, 32768, 1, 65535};
+    blend_product(FORMAT_RGBA16, (float[4]){0.5f, 1.0f, 0.0f, 0.25f}, wide);
+    ck_assert_uint_eq(wide[0], 32767); /* 65535 − 32768 */
+    ck_assert_uint_eq(wide[1], 0);
+    ck_assert_uint_eq(wide[2], 1);
+    ck_assert_uint_eq(wide[3], 49151);
+}
+END_TEST
+
+/* A product adds nothing, so it keeps −0; over makes the product of alpha with 0. Sums of halves
+ * are truncated and end at the greatest; one NaN is stored. */
+START_TEST(test_others_special)
+{
+    float pixel[4] = {-0.0f, INFINITY, 1.0f, 1.0f};
+    blend_product(FORMAT_RGBA32F, (float[4]){0.5f, 1.0f, NAN, INFINITY}, pixel);
+    ck_assert_float_bits(pixel[0], -0.0f);
+    ck_assert_uint_eq(op_bits(pixel[1]), 0x7fc00000u);
+    ck_assert_uint_eq(op_bits(pixel[2]), 0x7fc00000u);
+    ck_assert_float_bits(pixel[3], -INFINITY);
+    float over[4] = {0, 0, 0, 1.0f};
+    blend_over(FORMAT_RGBA32F, (float[4]){1.0f, 0, 0, INFINITY}, over);
+    ck_assert_uint_eq(op_bits(over[3]), 0x7fc00000u);
+    const float large[4] = {60000.0f, 1.0f, 0x1p-24f, INFINITY};
+    check_blend(blend_add, FORMAT_RGBA16F, large, (float[4]){60000.0f, 2048.0f, 0x1p-24f, 1.0f},
+                (float[4]){65504.0f, 2048.0f, 0x1p-23f, INFINITY});
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("blend");
@@ -232,6 +318,9 @@ int main(void)
     tcase_add_test(tcase, test_product16_differs);
     tcase_add_test(tcase, test_masks);
     tcase_add_test(tcase, test_over_and_max_by_hand);
+    tcase_add_test(tcase, test_others_by_hand);
+    tcase_add_test(tcase, test_others_in_codes);
+    tcase_add_test(tcase, test_others_special);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

@@ -267,6 +267,29 @@ START_TEST(test_store_fetch)
 }
 END_TEST
 
+START_TEST(test_overflowed)
+{
+    const uint16_t fine[4] = {0x7bfe, 0xfbfe, 0x0000, 0x8001};
+    ck_assert(!format_overflowed(FORMAT_RGBA16F, fine));
+    static const uint16_t ends[] = {0x7bff, 0xfbff, 0x7c00, 0xfc00, 0x7e00, 0xfe00};
+    for (int i = 0; i < 6; i++)
+        for (int c = 0; c < 4; c++) {
+            uint16_t pixel[4] = {0x3c00, 0x3c00, 0x3c00, 0x3c00};
+            pixel[c] = ends[i];
+            ck_assert(format_overflowed(FORMAT_RGBA16F, pixel));
+        }
+    float pixel[4] = {FLT_MAX, -FLT_MAX, 0x1p-149f, 65504.0f};
+    ck_assert(!format_overflowed(FORMAT_RGBA32F, pixel));
+    pixel[3] = -INFINITY;
+    ck_assert(format_overflowed(FORMAT_RGBA32F, pixel));
+    pixel[3] = NAN;
+    ck_assert(format_overflowed(FORMAT_RGBA32F, pixel));
+    ck_assert(!format_overflowed(FORMAT_R32F, pixel));
+    const uint8_t white[4] = {255, 255, 255, 255};
+    ck_assert(!format_overflowed(FORMAT_RGBA8, white));
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("format");
@@ -284,6 +307,7 @@ int main(void)
     tcase_add_test(tcase, test_depth_clamp);
     tcase_add_test(tcase, test_ulp_distance);
     tcase_add_test(tcase, test_store_fetch);
+    tcase_add_test(tcase, test_overflowed);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

@@ -11,5 +11,9 @@ Result peel_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result peel_id_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame);
 Result forward_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result weighted_average_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result weighted_sum_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result weighted_blended_render(Pass *pass, TraceSink *trace, Frame *frame);
+Result painter_render(Pass *pass, TraceSink *trace, Frame *frame);
 
 #endif

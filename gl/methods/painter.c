@@ -1,0 +1,81 @@
+/* The painter: transparent objects or triangles sorted by their centroids and blended over each
+ * other, far to near.
+ *
+ * This work is based on: M. Newell, R. Newell, T. Sancha, "A Solution to the Hidden Surface
+ * Problem", ACM 1972, without its splitting. The order: frame/sort.h. */
+#include "methods/methods.h"
+
+#include "base/progress.h"
+#include "frame/sort.h"
+#include "program.h"
+#include "readback.h"
+
+/* Uniforms are set where the draw changes: sorted triangles often come one by one. */
+static void draw_runs(const Passes *passes, GLuint program, const Sort *sort)
+{
+    gl.UseProgram(program);
+    for (size_t i = 0; i < sort->count; i++) {
+        const SortRun *run = &sort->runs[i];
+        const Draw *draw = &passes->view->draws[run->draw];
+        if (i == 0 || run->draw != run[-1].draw)
+            passes_use_draw(passes, program, draw);
+        passes_draw_triangles(passes, draw, run->first, run->count);
+    }
+}
+
+static Result paint(const Passes *passes, GLuint program, const Sort *sort, Frame *out)
+{
+    const Targets *targets = &passes->targets;
+    GLuint64 samples = 0;
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->plain_buffer);
+    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    gl.Enable(GL_BLEND);
+    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    draw_runs(passes, program, sort);
+    gl.EndQuery(GL_SAMPLES_PASSED);
+    gl.Disable(GL_BLEND);
+    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &samples);
+    progress_add();
+    out->peels = samples > 0;
+    out->geometry_passes = 2;
+    return context_check(passes->context, "painter");
+}
+
+static Result trace_layers(const Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    if (!passes->trace)
+        return RESULT_OK;
+    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
+                   passes->pixels);
+    return trace_put(passes->trace, "painter.layers", 1, targets->accum_format, targets->width,
+                     targets->height, passes->pixels);
+}
+
+Result gl_painter(Passes *passes, Frame *out)
+{
+    const PassesSource source = {
+        .surface = true, .peel_test = true, .shade = true, .main = shader_painter_frag};
+    const RenderDesc *desc = passes->desc;
+    GLuint program = 0;
+    Sort sort = {0};
+    Result result = targets_reserve(&passes->targets,
+                                    (size_t)sort_bytes(passes->scene, passes->view, desc->sort));
+    if (result == RESULT_OK)
+        result = sort_far_to_near(passes->scene, passes->view, desc->sort, &sort);
+    if (result == RESULT_OK)
+        result = passes_program(passes, "painter", desc->back_light ? "#define BACK_LIGHT\n" : "",
+                                &source, &program);
+    if (result == RESULT_OK)
+        result = passes_opaque(passes);
+    if (result == RESULT_OK)
+        result = paint(passes, program, &sort, out);
+    if (result == RESULT_OK)
+        result = trace_layers(passes);
+    if (result == RESULT_OK)
+        result = passes_finish(passes, out->peels);
+    gl.DeleteProgram(program);
+    sort_free(&sort);
+    return result;
+}

@@ -1,0 +1,94 @@
+/* What the tests of single methods share: random soups under random settings, ref against OpenGL
+ * bit for bit, and buffers of ref's trace. Link bits.c. */
+#ifndef PEEL_TESTS_METHODS_H
+#define PEEL_TESTS_METHODS_H
+
+#include "bits.h"
+#include "soup_kinds.h"
+#include "testing.h"
+
+#include "compare/store.h"
+#include "ref/pipeline/pipeline.h"
+
+static inline void methods_ok(Result result)
+{
+    ck_assert_msg(result == RESULT_OK, "%s", result_message());
+}
+
+/* Formats, tests and shading at random; every choice of method that is a setting too. */
+static inline RenderDesc methods_random_desc(Random *random, MethodId method, SoupKind kind)
+{
+    static const PixelFormat depths[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
+    static const PixelFormat accums[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
+                                         FORMAT_RGBA8};
+    int side = soup_kind_is_exact(kind);
+    return (RenderDesc){
+        .width = side ? 64 : 97,
+        .height = side ? 64 : 61,
+        .method = method,
+        .depth = depths[random_bits(random) % 3],
+        .accum = accums[random_bits(random) % 4],
+        .gbuffer = (GBufferFormat)(random_bits(random) % 3),
+        .depth_range = (DepthRange)(random_bits(random) % 3),
+        .depth_func = (DepthFunc)(random_bits(random) % 2),
+        .peel_test = (PeelTest)(random_bits(random) % 2),
+        .cull = (CullMode)(random_bits(random) % 3),
+        .normals = (NormalMode)(random_bits(random) % 2),
+        .ggx = (GgxForm)(random_bits(random) % 2),
+        .back_light = random_bits(random) % 2,
+        .opaque_blend = (OpaqueBlend)(random_bits(random) % 2),
+        .draw_order = (DrawOrder)(random_bits(random) % 3),
+        .draw_seed = random_bits(random),
+        .sort = (SortUnit)(random_bits(random) % 2),
+        .weight = (WeightEquation)(random_bits(random) % 4),
+    };
+}
+
+/* Of one random soup; *out: what was compared. */
+static inline void methods_check_soup(uint64_t seed, MethodId method, Bits *out)
+{
+    static Soup soup;
+    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
+    Random random = random_seed(seed);
+    RenderDesc desc = methods_random_desc(&random, method, kind);
+    soup_make_kind(&random, kind, desc.width, desc.height, &soup);
+    methods_ok(scene_validate(&soup.scene));
+    bits_compare(&soup.scene, &desc, out);
+    ck_assert_msg(out->differing == 0, "seed %llu, %s: %s", (unsigned long long)seed,
+                  soup_kind_name(kind), out->difference);
+}
+
+/* Renders with ref, and copies buffer `name` of its trace. The caller frees both. */
+static inline void methods_buffer(const Scene *scene, const RenderDesc *desc, const char *name,
+                                  Image *out, Frame *frame)
+{
+    TraceStore *store;
+    methods_ok(store_create(0, &store));
+    methods_ok(pipeline_render(scene, desc, store_sink(store), frame));
+    int index = store_find(store, name);
+    ck_assert_msg(index >= 0, "no buffer %s", name);
+    methods_ok(store_image(store, index, out));
+    store_destroy(store);
+}
+
+/* Squares that face the eye, one behind the other at depths[0] …, over the whole of a window of
+ * 192 × 20 pixels; all of material 2, with this alpha and no texture, under one light at
+ * the eye. */
+static inline void methods_squares(Soup *soup, const double depths[], uint32_t count, float alpha)
+{
+    Random random = random_seed(4);
+    soup_make(&random, soup);
+    soup->camera.yfov = 1.0;
+    soup->camera.near = 0.125;
+    soup->camera.far = 1000.0;
+    for (uint32_t i = 0; i < count; i++)
+        soup_square(soup, i, depths[i], -1, 1);
+    Material *material = &soup->materials[2];
+    material->base_color_texture = material->metallic_roughness_texture = 0;
+    material->alpha_mode = ALPHA_BLEND;
+    material->base_color[3] = alpha;
+    memset(soup->lights[0].position, 0, sizeof soup->lights[0].position);
+    soup->scene.light_count = 1;
+}
+
+#endif
