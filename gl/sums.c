@@ -76,7 +76,7 @@ static Result draw(Sums *sums, Frame *out)
     Result result = passes_draw_counted(passes, sums->geometry, true, &samples);
     gl.Disable(GL_BLEND);
     progress_add();
-    out->geometry_passes = 2;
+    out->geometry_passes = 1;
     out->peels = samples > 0;
     return result;
 }

@@ -147,7 +147,7 @@ Result limits_peels(Limits *limits, Result (*draw_peel)(void *state, int peel), 
     int most = limits->passes->desc->passes ? limits->passes->desc->passes : PASSES_MAX;
     bool any = false;
     progress_add();
-    frame->geometry_passes = 2;
+    frame->geometry_passes = 1;
     Result result = draw_first(limits);
     if (result == RESULT_OK)
         result = any_layer(limits, 0, &any);

@@ -38,7 +38,7 @@ static Result paint(const Passes *passes, GLuint program, const Sort *sort, Fram
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &samples);
     progress_add();
     out->peels = samples > 0;
-    out->geometry_passes = 2;
+    out->geometry_passes = 1;
     return context_check(passes->context, "painter");
 }
 

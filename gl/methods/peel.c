@@ -146,7 +146,6 @@ static Result run(Peel *state)
     int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
     bool more = true;
     Result result = passes_opaque(passes);
-    state->frame->geometry_passes = 1;
     for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
         result = run_peel(state, peel, &more);
     return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;

@@ -119,12 +119,11 @@ static inline bool pass_may_leave(const Pass *pass, int peels, int limit)
     return peels > 0 && (peels == limit || pass->desc->peel_test == PEEL_TEST_RAW);
 }
 
-/* Of a method that draws the opaque list once and then the transparent list peel by peel, until one
- * yields nothing or the limit. */
+/* Of a method that draws the transparent list peel by peel, until one yields nothing or the limit. */
 static inline int pass_geometry_passes(const Pass *pass, int peels)
 {
     int limit = pass->desc->passes ? pass->desc->passes : PASSES_MAX;
-    return 1 + peels + (peels < limit);
+    return peels + (peels < limit);
 }
 
 /* One pixel's transparent fragments in front of the opaque depth. */

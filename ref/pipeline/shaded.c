@@ -9,5 +9,5 @@ void shaded_count(Stage *stage)
     for (size_t i = 0; i < pixels; i++)
         stage->counts.peeled += stage->fragments[i];
     stage->frame->peels = shaded > 0;
-    stage->frame->geometry_passes = 2;
+    stage->frame->geometry_passes = 1;
 }

@@ -37,8 +37,8 @@ void report_methods_row(const Threeway *report, FILE *out)
 void report_methods_foot(FILE *out)
 {
     fprintf(out,
-            "passes: that blended something; geometry: passes over a list of the scene, in gl; "
-            "shaded: fragments lit,\nopaque ones included; ref - gl: differing values in all "
-            "buffers; then ref against truth. Times are of one\nframe each, gl's with compiling "
-            "its shaders.\n");
+            "passes: that blended something; geometry: passes over the transparent geometry, in gl "
+            "(the one over the opaque\nis extra, linked-list does both at once); shaded: fragments "
+            "lit, opaque ones included; ref - gl: differing\nvalues in all buffers; then ref "
+            "against truth. Times are of one frame each, gl's with compiling its shaders.\n");
 }

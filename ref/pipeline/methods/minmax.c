@@ -231,7 +231,7 @@ Result minmax_peels(Stage *stage)
         layers = count_layers(&minmax->current);
         frame->peels = peel + 1;
     }
-    frame->geometry_passes = 2 + frame->peels;
+    frame->geometry_passes = 1 + frame->peels;
     if (result == RESULT_OK && layers > 0)
         result = stage_run(stage, remaining_tile);
     return result == RESULT_OK ? put_back_ids(stage) : result;

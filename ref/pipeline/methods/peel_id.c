@@ -179,7 +179,7 @@ static Result peels(Stage *stage)
             return result;
         frame->peels = state->peel + 1;
     }
-    frame->geometry_passes = 1 + 3 * frame->peels + (frame->peels < limit);
+    frame->geometry_passes = 3 * frame->peels + (frame->peels < limit);
     return frame->peels == limit ? stage_run(stage, remaining_tile) : RESULT_OK;
 }
 
