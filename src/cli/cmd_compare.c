@@ -31,7 +31,7 @@ static const struct argp_option command_options[] = {
     {"report", KEY_REPORT, "DIR", 0, "Write a page with pictures to DIR/index.html", 0},
     {"tolerance", KEY_TOLERANCE, "T", 0,
      "Allowed difference from truth at the 99th percentile, relative to max(1, value), where both "
-     "see the same fragments in the same order (default 1e-4)",
+     "see the same fragments in the same order (default: the method's, see peel methods)",
      0},
     {0},
 };
@@ -167,7 +167,7 @@ static Result compare(const CompareCommand *command, const Scene *scene, Threewa
 
 int cmd_compare(int argc, char **argv)
 {
-    CompareCommand command = {.render = options_default(), .tolerance = 1e-4};
+    CompareCommand command = {.render = options_default(), .tolerance = -1.0};
     command.line = command_line(argc, argv);
     int code = options_parse(&command_argp, argc, argv, &command);
     if (code) {

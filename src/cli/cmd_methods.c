@@ -16,8 +16,9 @@ static const struct argp methods_argp = {
     NULL,
     parse,
     "",
-    "Lists the methods of --method: what each does, whether it converges to the sorted result, and "
-    "the paper that it is from.",
+    "Lists the methods of --method: whether each converges to the sorted result, and how near to "
+    "truth "
+    "it is then (--tolerance of peel compare), what it does, and the paper that it is from.",
     NULL,
     NULL,
     NULL};
@@ -29,8 +30,10 @@ int cmd_methods(int argc, char **argv)
         return code == OPTIONS_HELPED ? EXIT_AGREE : code;
     for (int i = 0; i < METHOD_COUNT; i++) {
         const MethodInfo *method = method_info((MethodId)i);
-        printf("%-17s %-12s %s\n%18s%s\n", method->name, method->exact ? "exact" : "approximate",
-               method->summary, "", method->paper);
+        char bound[32] = "approximate";
+        if (method->exact)
+            snprintf(bound, sizeof bound, "exact to %g", method->tolerance);
+        printf("%-17s %-15s %s\n%18s%s\n", method->name, bound, method->summary, "", method->paper);
     }
     return EXIT_AGREE;
 }

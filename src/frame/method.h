@@ -9,8 +9,10 @@ typedef struct MethodInfo {
     const char *name; /* as on the command line */
     const char *paper;
     const char *summary;
-    bool exact;  /* converges to the sorted result with enough passes, ties apart */
-    bool layers; /* ref traces peel.K.primitive: its layers, front to back */
+    bool exact;       /* converges to the sorted result with enough passes, ties apart */
+    bool layers;      /* ref traces peel.K.primitive: its layers, front to back */
+    double tolerance; /* at most this from truth at the 99th percentile, relative to max(1, value),
+                       * in its best formats; 0 where it is not exact */
 } MethodInfo;
 
 const MethodInfo *method_info(MethodId id);      /* static */

@@ -317,12 +317,13 @@ Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc
                     const Renderer renderers[RENDERER_COUNT], double tolerance, bool keep_pictures,
                     Threeway *out)
 {
-    *out = (Threeway){.scene_name = scene->name,
-                      .scene_path = path,
-                      .desc = *desc,
-                      .light_count = scene->light_count,
-                      .seed_profile = render_desc_is_seed(desc),
-                      .tolerance = tolerance};
+    *out =
+        (Threeway){.scene_name = scene->name,
+                   .scene_path = path,
+                   .desc = *desc,
+                   .light_count = scene->light_count,
+                   .seed_profile = render_desc_is_seed(desc),
+                   .tolerance = tolerance < 0.0 ? method_info(desc->method)->tolerance : tolerance};
     Run run = {.scene = scene, .desc = *desc, .renderers = renderers, .report = out};
     Result result = run_all(&run, keep_pictures);
     store_destroy(run.ref_trace);

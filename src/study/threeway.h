@@ -59,7 +59,8 @@ enum {
 };
 
 /* Renderers in the order of RENDERER_…; any may fail, and the message says which.
- * keep_pictures: fill peels. The caller frees with threeway_free. */
+ * tolerance: from 0; negative for the method's (frame/method.h). keep_pictures: fill peels. The
+ * caller frees with threeway_free. */
 Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc,
                     const Renderer renderers[RENDERER_COUNT], double tolerance, bool keep_pictures,
                     Threeway *out);
