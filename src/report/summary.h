@@ -49,6 +49,13 @@ int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS
 /* Below every table of times. */
 #define SUMMARY_TIME_NOTE "gl's time includes compiling its shaders."
 
+/* Below every table of methods. */
+#define SUMMARY_METHODS_NOTE                                                                       \
+    "passes: that blended something; geometry: passes over the transparent geometry, in gl (the "  \
+    "one over the opaque\nis extra, linked-list does both at once); shaded: fragments lit, "       \
+    "opaque ones included; ref - gl: differing\nvalues in all buffers; then ref against truth. "   \
+    "Times are of one frame each, gl's with compiling its shaders."
+
 /* One sentence each. */
 void summary_pair_exact(const Threeway *report, char out[SUMMARY_LINE]); /* ref against gl */
 void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE]); /* ref against truth */
