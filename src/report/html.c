@@ -41,7 +41,9 @@ static void put_verdict(FileWriter *page, const Threeway *report)
                                                        summary_nodes,      summary_speed};
     char line[SUMMARY_LINE];
     html_open_verdict(page, report->agree,
-                      report->agree ? "The three renderers agree" : "The renderers differ");
+                      !report->agree                            ? "The renderers differ"
+                      : method_info(report->desc.method)->exact ? "The three renderers agree"
+                                                                : "ref and gl agree");
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         lines[i](report, line);
         html_item(page, line);

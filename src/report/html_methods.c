@@ -49,13 +49,14 @@ static void put_reason(FileWriter *page, const Threeway *report)
 static void put_verdict(FileWriter *page, const Methods *methods)
 {
     char text[96], line[SUMMARY_LINE], values[SUMMARY_NUMBER];
-    size_t differ = 0, equal = 0;
+    size_t differ = 0, equal = 0, exact = 0;
     uint64_t compared = 0;
     for (size_t i = 0; i < methods->count; i++) {
         const PairReport *pair = &methods->reports[i].pairs[0];
         SummaryTotals totals = summary_totals(pair);
         differ += !methods->reports[i].agree;
         equal += !totals.values_differing && !pair->final.differing;
+        exact += method_info(methods->reports[i].desc.method)->exact;
         compared += totals.values;
     }
     if (differ)
@@ -68,6 +69,12 @@ static void put_verdict(FileWriter *page, const Methods *methods)
              "ref and gl agree bit for bit in %zu of %zu methods; %s values compared.", equal,
              methods->count, summary_count(compared, values));
     html_item(page, line);
+    if (exact < methods->count) {
+        snprintf(line, sizeof line,
+                 "%zu approximate: their distance from truth is shown, and not judged.",
+                 methods->count - exact);
+        html_item(page, line);
+    }
     for (size_t i = 0; i < methods->count; i++)
         if (!methods->reports[i].agree)
             put_reason(page, &methods->reports[i]);

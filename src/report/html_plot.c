@@ -82,9 +82,12 @@ static void set_times(Plot *plot)
         low = fmin(low, log10(plot->marks[i].time_ms));
         high = fmax(high, log10(plot->marks[i].time_ms));
     }
-    double room = fmax(0.15, 0.5 * (0.8 - (high - low)));
-    plot->x_low = plot->count ? low - room : 0.0;
-    plot->x_high = plot->count ? high + room : 1.0;
+    if (!plot->count)
+        low = high = 0.0;
+    /* A label fits on the left of every point. */
+    double room = fmax(0.4 * (high - low), 0.5 * (0.8 - (high - low)));
+    plot->x_low = low - room;
+    plot->x_high = high + 0.5 * room;
 }
 
 static double x_of(const Plot *plot, double time_ms)
@@ -192,7 +195,7 @@ static void put_label(Mark *mark, double x, double y, bool has_leader)
     double half = 0.5 * letter_width * (double)strlen(mark->method->name);
     mark->label = (Box){x - half, y - 0.5 * LABEL_HEIGHT, x + half, y + 0.5 * LABEL_HEIGHT};
     mark->has_leader = has_leader;
-    mark->to[0] = fmin(fmax(mark->x, mark->label.x0 + 4), mark->label.x1 - 4);
+    mark->to[0] = fmin(fmax(mark->x, mark->label.x0 - 2), mark->label.x1 + 2);
     mark->to[1] = fmin(fmax(mark->y, mark->label.y0 + 2), mark->label.y1 - 2);
     double dx = mark->to[0] - mark->x, dy = mark->to[1] - mark->y;
     double length = fmax(hypot(dx, dy), MARK_RADIUS + 1.0);
@@ -200,31 +203,42 @@ static void put_label(Mark *mark, double x, double y, bool has_leader)
     mark->from[1] = mark->y + dy * (MARK_RADIUS + 1.0) / length;
 }
 
-/* The first clear place: right, left, above, below; then in growing rings around the point. */
-static void place_label(Plot *plot, size_t index)
+/* Puts the label into the first clear place; without one, above, and returns false. crowded: only
+ * to the left, in steps up or down, which leaves the way free to points further right. */
+static bool place_label(Plot *plot, size_t index, bool crowded)
 {
-    /* Steep ones first: labels are wide. */
-    static const double directions[][2] = {{0.0, -1.0}, {0.0, 1.0},  {0.5, -0.9}, {-0.5, -0.9},
-                                           {0.5, 0.9},  {-0.5, 0.9}, {1.0, -0.4}, {-1.0, -0.4},
-                                           {1.0, 0.4},  {-1.0, 0.4}};
     Mark *mark = &plot->marks[index];
     double half = 0.5 * letter_width * (double)strlen(mark->method->name);
     const double beside = half + MARK_RADIUS + 4, above = 0.5 * LABEL_HEIGHT + MARK_RADIUS + 3;
-    const double near_by[4][2] = {{beside, 0.0}, {-beside, 0.0}, {0.0, -above}, {0.0, above}};
-    for (int i = 0; i < 4; i++) {
+    const double near_by[][2] = {{-beside, 0.0}, {beside, 0.0}, {0.0, -above}, {0.0, above}};
+    /* Multiples of half the width, and of the ring. */
+    static const double rings[][2] = {{-1.0, -1.0}, {-1.0, 1.0}, {0.0, -1.0},  {0.0, 1.0},
+                                      {1.0, -1.0},  {1.0, 1.0},  {-1.5, -1.0}, {1.5, -1.0},
+                                      {-1.5, 1.0},  {1.5, 1.0}};
+    for (int i = 0; i < (crowded ? 1 : 4); i++) {
         put_label(mark, mark->x + near_by[i][0], mark->y + near_by[i][1], false);
         if (is_clear(plot, index))
-            return;
+            return true;
     }
     for (int ring = 1; ring <= RINGS; ring++)
-        for (size_t i = 0; i < sizeof directions / sizeof directions[0]; i++) {
-            double reach = above + 18.0 * ring;
-            put_label(mark, mark->x + directions[i][0] * (half + reach),
-                      mark->y + directions[i][1] * reach, true);
+        for (int i = 0; i < (crowded ? 2 : 10); i++) {
+            double reach = above + 18.0 * (ring - 1);
+            put_label(mark, mark->x + rings[i][0] * (half + 4.0), mark->y + rings[i][1] * reach,
+                      true);
             if (is_clear(plot, index))
-                return;
+                return true;
         }
     put_label(mark, mark->x, mark->y - above, false);
+    return false;
+}
+
+static void place_labels(Plot *plot)
+{
+    bool placed = true;
+    for (size_t i = 0; i < plot->count; i++)
+        placed &= place_label(plot, i, false);
+    for (size_t i = 0; i < plot->count && !placed; i++)
+        place_label(plot, i, true);
 }
 
 /* ---- drawing --------------------------------------------------------------------------------- */
@@ -327,8 +341,7 @@ void html_plot(FileWriter *page, const Threeway *reports, size_t count, int rend
 {
     Plot plot;
     make_plot(reports, count, renderer, &plot);
-    for (size_t i = 0; i < plot.count; i++)
-        place_label(&plot, i);
+    place_labels(&plot);
     file_writer_print(page,
                       "<figure class=\"plot\">\n<div tabindex=\"0\" role=\"region\" "
                       "aria-label=\"Plot of %s\">\n<svg viewBox=\"0 0 %d %d\" role=\"img\" "
