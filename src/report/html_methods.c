@@ -44,6 +44,11 @@ static void put_reason(FileWriter *page, const Threeway *report)
         summary_pair_truth(report, reason);
     snprintf(line, sizeof line, "%s: %s", name_of(report), reason);
     html_item(page, line);
+    if (report->structure.layers.lost_to_overflow) {
+        summary_nodes(report, reason);
+        snprintf(line, sizeof line, "%s: %s", name_of(report), reason);
+        html_item(page, line);
+    }
 }
 
 static void put_verdict(FileWriter *page, const Methods *methods)

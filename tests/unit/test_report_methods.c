@@ -127,10 +127,13 @@ START_TEST(test_verdict)
     reports[METHOD_LINKED_LIST].agree = false;
     reports[METHOD_LINKED_LIST].pairs[0].buffer_count = 5;
     reports[METHOD_LINKED_LIST].pairs[1].unaffected.p99_rel = 0.5;
+    reports[METHOD_LINKED_LIST].structure.layers.lost_to_overflow = 9;
     write_page();
     assert_contains(text, "2 of 10 methods differ<");
     assert_contains(text, "<li>dual: ref and gl differ in 17 of ");
     assert_contains(text, "<li>linked-list: ref and truth differ: 99th percentile ");
+    assert_contains(text, "<li>linked-list: The lists need 123,456 nodes x 20 bytes = 2.4 MiB; there "
+                          "was no room for 9 of them.</li>");
     ck_assert_int_eq(occurrences("<tr class=\"off\">"), 2);
     ck_assert_int_eq(occurrences(">differs</td>"), 2);
 }
