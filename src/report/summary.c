@@ -218,12 +218,17 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
     const PairReport *pair = &report->pairs[1];
     const UnaffectedMetrics *unaffected = &pair->unaffected;
     if (!method_info(report->desc.method)->exact) {
-        char most[SUMMARY_NUMBER], rmse[SUMMARY_NUMBER];
-        snprintf(out, SUMMARY_LINE,
-                 "ref and truth: %s approximates, so it is not judged; largest difference %s, root "
-                 "mean square %s.",
-                 method_info(report->desc.method)->name, summary_real(pair->final.max_abs, most),
-                 summary_real(pair->final.rmse, rmse));
+        char most[SUMMARY_NUMBER], rmse[SUMMARY_NUMBER], nonfinite[SUMMARY_NUMBER];
+        int length = snprintf(
+            out, SUMMARY_LINE,
+            "ref and truth: %s approximates, so it is not judged; largest difference %s, root "
+            "mean square %s.",
+            method_info(report->desc.method)->name, summary_real(pair->final.max_abs, most),
+            summary_real(pair->final.rmse, rmse));
+        if (pair->final.nonfinite)
+            snprintf(out + length, (size_t)(SUMMARY_LINE - length),
+                     " Not finite, which is a fault: %s pixels.",
+                     summary_count(pair->final.nonfinite, nonfinite));
         return;
     }
     if (!report->structure.same_scene) {

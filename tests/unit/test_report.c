@@ -110,6 +110,11 @@ START_TEST(test_lines_of_methods)
     print_table(text, sizeof text);
     assert_contains(text, "Peels: none, one pass");
     assert_contains(text, "Weight: equation 9");
+    assert_contains(text, "weighted-blended approximates, so it is not judged");
+    assert_contains(text, " Not finite, which is a fault: 1 pixels.");
+    report.pairs[1].final.nonfinite = 0;
+    print_table(text, sizeof text);
+    assert_lacks(text, "a fault");
 }
 END_TEST
 
