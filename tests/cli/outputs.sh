@@ -74,6 +74,28 @@ has 'JSON' j.json '"lost_to_pass_limit"'
 has 'JSON' j.json '"residual"'
 expect 'report' test -s report/of/this/index.html
 has 'report' report/of/this/index.html 'peel compare chain.gltf --size 64x36 --passes 1'
+exits 0 'all methods, report and JSON' "$peel" compare chain.gltf --size 64x36 --method all \
+    --tolerance 1 --json all.json --report methods/of/this
+has 'JSON of all methods' all.json '"agree": true'
+has 'report of all methods' methods/of/this/index.html \
+    'peel compare chain.gltf --size 64x36 --method all'
+"$peel" methods | sed -n 's/^\([a-z][a-z-]*\) .*/\1/p' >names
+expect 'the table of methods' test "$(wc -l <names)" -ge 10
+while read -r name; do
+    has 'JSON of all methods' all.json "\"method\": \"$name\""
+    has 'report of all methods' methods/of/this/index.html "<h3><a href=\"$name/index.html\">"
+    has 'report of a method' "methods/of/this/$name/index.html" 'href="../index.html"'
+done <names
+for page in methods/of/this/index.html methods/of/this/*/index.html; do
+    grep -o -E '(src|href)="[^"]*"' "$page" | cut -d '"' -f 2 | sort -u >links
+    while read -r link; do
+        expect "a file that $page names" test -s "${page%/*}/$link"
+    done <links
+done
+exits 2 'all methods, a tolerance that nothing meets' "$peel" compare chain.gltf --size 64x36 --method all \
+    --tolerance 1e-30 --json all.json --report methods/of/this
+has 'every method, also after one that differs' all.json '"method": "painter"'
+has 'every method, also after one that differs' methods/of/this/index.html '[0-9] of [0-9]* methods differ'
 exits 0 '1x1' "$peel" compare chain.gltf --size 1x1
 exits 0 'no lights' "$peel" compare chain.gltf --size 33x17 --lights 0
 exits 0 'all opaque' "$peel" compare chain.gltf --size 33x17 --opacity 1
