@@ -11,12 +11,9 @@
 
 #include "compare/metrics.h"
 #include "frame/method.h"
-#include "frame/view.h"
 #include "gl/gl_renderer.h"
 #include "ref/truth/truth.h"
 #include "scene/generate.h"
-
-#include <stdio.h>
 
 enum {
     WIDTH = 96,
@@ -26,7 +23,6 @@ enum {
 };
 
 static const Renderer renderers[] = {pipeline_render, gl_render};
-static const char *const renderer_names[] = {"ref", "gl"};
 
 static RenderDesc method_desc(int method)
 {
@@ -172,31 +168,37 @@ END_TEST
  * one. */
 static void make_textured(Soup *soup)
 {
-    Random random = random_seed(2026);
+    Random random = random_seed(4);
     soup_make_kind(&random, SOUP_PERSPECTIVE, WIDTH, HEIGHT, soup);
-    if (soup->scene.texture_count == 0)
-        soup_texture(&random, soup);
+    soup_texture(&random, soup);
     for (uint32_t i = 0; i < SOUP_INSTANCES; i++)
         soup->instances[i].material = i % 8;
+    for (int m = 0; m < SOUP_MESHES; m++)
+        soup->meshes[m].uv = soup->uv[m];
     soup->materials[1].base_color_texture = 1;
+    soup->materials[1].alpha_cutoff = 0.5f;
     soup->materials[2].base_color_texture = 2;
     soup->scene.background[1] = 0.75f;
     methods_ok(scene_validate(&soup->scene));
 }
 
-static void check_textured(const Scene *scene, const RenderDesc *desc)
+/* That both textures show: without the cut-out, and without the colours, the image differs. */
+static void check_textures_show(Soup *soup, const RenderDesc *desc)
 {
-    View view;
-    int masked = 0, blended = 0;
-    methods_ok(view_build(scene, desc, &view));
-    for (size_t i = 0; i < view.draw_count; i++) {
-        masked += view.draws[i].masked;
-        blended += view.draws[i].transparent &&
-                   scene->materials[view.draws[i].material].base_color_texture > 0;
+    Material kept[8];
+    Frame frames[3];
+    memcpy(kept, soup->materials, sizeof kept);
+    for (int i = 0; i < 3; i++) {
+        if (i == 1)
+            soup->materials[1].alpha_mode = ALPHA_OPAQUE;
+        if (i == 2)
+            soup->materials[2].base_color_texture = 0;
+        methods_ok(pipeline_render(&soup->scene, desc, NULL, &frames[i]));
+        memcpy(soup->materials, kept, sizeof kept);
     }
-    view_free(&view);
-    ck_assert_int_gt(masked, 0);
-    ck_assert_int_gt(blended, 0);
+    ck_assert(!same_image(&frames[0], &frames[1]) && !same_image(&frames[0], &frames[2]));
+    for (int i = 0; i < 3; i++)
+        frame_free(&frames[i]);
 }
 
 START_TEST(test_formats)
@@ -206,7 +208,7 @@ START_TEST(test_formats)
                                           FORMAT_RGBA8};
     RenderDesc desc = method_desc(_i);
     make_textured(&soup);
-    check_textured(&soup.scene, &desc);
+    check_textures_show(&soup, &desc);
     for (int f = 0; f < 4; f++)
         for (desc.passes = 0; desc.passes <= 2; desc.passes += 2) {
             Bits bits;
@@ -286,8 +288,7 @@ START_TEST(test_materials_change)
     for (int r = 0; r < 2; r++) {
         for (int state = 1; state < STATES - 1; state++)
             ck_assert(!same_image(&frames[state - 1][r], &frames[state][r]));
-        ck_assert_msg(same_image(&frames[0][r], &frames[STATES - 1][r]),
-                      "%s of %s: not what it was before", renderer_names[r], name_of(&desc));
+        ck_assert(same_image(&frames[0][r], &frames[STATES - 1][r]));
     }
     for (int i = 0; i < 2 * STATES; i++)
         frame_free(&frames[i / 2][i % 2]);
