@@ -64,11 +64,12 @@ static int expected_passes(MethodId method, int layers)
     }
 }
 
-/* The same bits, and no more passes than `layers` layers take. */
-static void check(const Scene *scene, const RenderDesc *desc, int layers)
+/* The same bits, and as many passes as `layers` layers take. desc->unfused becomes the driver's. */
+static void check(const Scene *scene, RenderDesc *desc, int layers)
 {
     Bits bits;
     same_bits(scene, desc, &bits);
+    desc->unfused = !bits.fused;
     int expected = expected_passes(desc->method, layers), ref = bits.geometry_passes[0];
     /* Lists may have been drawn again by gl, with more room (bits.c). */
     int again = desc->method == METHOD_LINKED_LIST && bits.geometry_passes[1] > ref;
