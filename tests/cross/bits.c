@@ -110,6 +110,8 @@ void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)
     ok(against_finish(&against));
     out->fused = frame.fused;
     out->peels = ref.peels;
+    out->geometry_passes[0] = ref.geometry_passes;
+    out->geometry_passes[1] = frame.geometry_passes;
     out->layers = ref.layers;
     add_buffers(&against, desc, out);
     add_frames(&ref, &frame, out);

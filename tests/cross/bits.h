@@ -11,6 +11,7 @@ typedef struct Bits {
                               * differ */
     size_t buffers;          /* of the trace */
     int peels;               /* of ref */
+    int geometry_passes[2];  /* of ref and gl */
     LayerStats layers;       /* of ref */
     bool fused;              /* the driver's mode, which ref follows */
     char difference[512];    /* the first one, "" if there is none */
