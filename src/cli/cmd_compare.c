@@ -128,7 +128,7 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
         if (count == 0)
             report_methods_head(&reports[0], stdout);
         report_methods_row(&reports[count], stdout);
-        *agree = *agree && reports[count++].agree;
+        *agree = reports[count++].agree && *agree;
     }
     if (result == RESULT_OK) {
         report_methods_foot(stdout);
