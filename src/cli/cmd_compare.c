@@ -111,6 +111,14 @@ static Result open_directory(const char *path)
     return result;
 }
 
+/* The same failure, with the method in its message. */
+static Result name_method(Result result, MethodId id)
+{
+    char message[512];
+    snprintf(message, sizeof message, "%s", result_message());
+    return result_fail(result, "%s: %s", method_info(id)->name, message);
+}
+
 /* Renders and compares by one method, prints its row, and writes its page. */
 static Result compare_method(const CompareCommand *command, const Scene *scene, MethodId id,
                              Threeway *report)
@@ -125,13 +133,15 @@ static Result compare_method(const CompareCommand *command, const Scene *scene, 
                                  command->tolerance, command->report != NULL, report);
     progress_context(NULL);
     if (result != RESULT_OK)
-        return result;
+        return name_method(result, id);
     if (id == 0)
         report_methods_head(report, stdout);
     report_methods_row(report, stdout);
     if (command->report)
         result = report_html_write_method(report, command->line, command->report);
     threeway_release_images(report);
+    if (result != RESULT_OK)
+        threeway_free(report);
     return result;
 }
 

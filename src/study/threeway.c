@@ -192,7 +192,8 @@ static bool judge(const Threeway *report)
     if (ref_truth->final.nonfinite > 0)
         return false;
     return !method_info(report->desc.method)->exact ||
-           (ref_truth->unaffected.p99_rel <= report->tolerance && report->structure.same_scene);
+           (ref_truth->unaffected.pixels > 0 &&
+            ref_truth->unaffected.p99_rel <= report->tolerance && report->structure.same_scene);
 }
 
 /* ---- pictures of the peels ---- */
