@@ -53,10 +53,11 @@ static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int 
 {
     if (!has(best, truth->ids[index]))
         return CLASS_COVERAGE;
-    bool last = true; /* nothing behind it is there */
+    /* What is behind the last pass has nothing behind it, or lies between both ends. */
+    bool ends = desc->method == METHOD_DUAL || desc->method == METHOD_FORWARD_DUAL, last = true;
     for (int i = index + 1; i < truth->count; i++)
         last = last && !has(actual, truth->ids[i]);
-    if (desc->passes && last)
+    if (desc->passes && (last || ends))
         return CLASS_LOST_LIMIT;
     if (desc->method == METHOD_LINKED_LIST)
         return desc->nodes_per_pixel ? CLASS_LOST_OVERFLOW : CLASS_UNEXPLAINED;
