@@ -202,6 +202,30 @@ START_TEST(test_failure)
 }
 END_TEST
 
+/* One pixel of the picture in question has what no change of settings gives. */
+static Result errs_once(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
+{
+    Result result = pipeline_render(scene, desc, trace, out);
+    if (result == RESULT_OK && calls++ == 0)
+        ((float *)image_pixel(&out->final, 5, 7))[1] += 0.5f;
+    return result;
+}
+
+START_TEST(test_unexplained)
+{
+    static Layers layers;
+    RenderDesc desc = layers_desc();
+    Budget budget;
+    layers_ladder(3, &layers);
+    ok(budget_run(&layers.scene, &desc, errs_once, truth_render, &budget));
+    ck_assert_uint_eq(budget.counts[CLASS_UNEXPLAINED], 1);
+    ck_assert_int_eq(budget.classes[7 * WIDTH + 5], CLASS_UNEXPLAINED);
+    ck_assert_double_lt(budget.explained, 0.01);
+    ck_assert_double_ge(budget.unexplained.max_abs, 0.499);
+    budget_free(&budget);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("budget");
@@ -214,6 +238,7 @@ int main(void)
     tcase_add_test(tcase, test_clamp);
     tcase_add_test(tcase, test_seed);
     tcase_add_test(tcase, test_failure);
+    tcase_add_test(tcase, test_unexplained);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }
