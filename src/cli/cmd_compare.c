@@ -4,6 +4,8 @@
 #include "cli/bind.h"
 #include "cli/options.h"
 #include "frame/method.h"
+#include "image/png.h"
+#include "report/budget.h"
 #include "report/html.h"
 #include "report/table.h"
 
@@ -16,7 +18,8 @@
 
 typedef struct CompareCommand {
     RenderOptions render;
-    const char *json, *report;
+    const char *json, *report, *classes;
+    bool budget;
     double tolerance;
     char *line; /* the command, to be shown in the report */
 } CompareCommand;
@@ -24,7 +27,9 @@ typedef struct CompareCommand {
 enum {
     KEY_JSON = 0x200,
     KEY_REPORT,
-    KEY_TOLERANCE
+    KEY_TOLERANCE,
+    KEY_BUDGET,
+    KEY_CLASSES
 };
 
 static const struct argp_option command_options[] = {
@@ -37,6 +42,14 @@ static const struct argp_option command_options[] = {
     {"tolerance", KEY_TOLERANCE, "T", 0,
      "Allowed difference from truth at the 99th percentile, relative to max(1, value), where both "
      "see the same fragments in the same order (default: the method's, see peel methods)",
+     0},
+    {"budget", KEY_BUDGET, 0, 0,
+     "Also render with one thing changed at a time, and say what each adds to the difference "
+     "between ref and truth, and why each pixel differs",
+     0},
+    {"classes", KEY_CLASSES, "FILE", 0,
+     "Write a PNG in which each pixel's colour says why it differs (with --budget's table as its "
+     "legend)",
      0},
     {0},
 };
@@ -55,6 +68,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return options_real(argument, 0.0, 1e30, &command->tolerance)
                    ? 0
                    : options_error("--tolerance %s: expected a number from 0", argument);
+    case KEY_BUDGET:
+        command->budget = true;
+        return 0;
+    case KEY_CLASSES:
+        command->classes = argument;
+        command->budget = true;
+        return 0;
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;
         return 0;
@@ -175,11 +195,34 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
     return result;
 }
 
+/* Frees nothing of report; *budget is the caller's to free. */
+static Result explain(const CompareCommand *command, const Scene *scene, Threeway *report,
+                      Budget *budget)
+{
+    RenderDesc desc = report->desc;
+    Image image = {0};
+    desc.unfused = !report->frames[RENDERER_REF].fused;
+    Result result = budget_run(scene, &desc, bind_renderers[RENDERER_REF],
+                               bind_renderers[RENDERER_TRUTH], budget);
+    if (result != RESULT_OK)
+        return result;
+    report->budget = budget;
+    report_budget_print(budget, stdout);
+    if (command->classes)
+        result = report_classes_image(budget, &image);
+    if (command->classes && result == RESULT_OK)
+        result = png_write(&image, command->classes);
+    image_free(&image);
+    return result;
+}
+
 static Result compare(const CompareCommand *command, const Scene *scene, Threeway *report)
 {
     Result result = command->report ? open_directory(command->report) : RESULT_OK;
     if (result == RESULT_OK)
         result = options_check_output(command->json);
+    if (result == RESULT_OK)
+        result = options_check_output(command->classes);
     if (result == RESULT_OK)
         result = options_check_fma(&command->render);
     if (result == RESULT_OK)
@@ -188,11 +231,16 @@ static Result compare(const CompareCommand *command, const Scene *scene, Threewa
     if (result != RESULT_OK)
         return result;
     report_table_print(report, stdout);
+    Budget budget = {0};
+    if (command->budget)
+        result = explain(command, scene, report, &budget);
     fflush(stdout); /* before a --json /dev/stdout */
-    if (command->json)
+    if (result == RESULT_OK && command->json)
         result = report_json_write(report, command->json);
     if (result == RESULT_OK && command->report)
         result = report_html_write(report, command->line, command->report);
+    report->budget = NULL;
+    budget_free(&budget);
     if (result != RESULT_OK)
         threeway_free(report);
     return result;

@@ -84,8 +84,7 @@ static int find(const uint32_t *ids, int count, uint32_t id)
     return -1;
 }
 
-/* A layer that the raw peel test took again is no fragment more. Returns the new count. */
-static int drop_repetitions(uint32_t *ids, int count)
+int structure_drop_repetitions(uint32_t *ids, int count)
 {
     int kept = 0;
     for (int i = 0; i < count; i++)
@@ -119,67 +118,104 @@ static void count_differences(const uint32_t *a, int count_a, const uint32_t *b,
         out->only_b += (uint64_t)(count_b - common);
 }
 
-typedef struct Comparison {
-    Layers a, b;
-    uint32_t *sequence_a, *sequence_b;
-} Comparison;
+/* ---- all pixels ---- */
 
-static StructureSame compare_pixel(Comparison *comparison, int p, StructureCounts *out)
+typedef struct Sides {
+    Layers layers[STRUCTURE_STORES_MAX];
+    uint32_t *ids[STRUCTURE_STORES_MAX]; /* of one pixel */
+    int count;
+} Sides;
+
+static Result open_sides(const TraceStore *const stores[], int count, Sides *out)
 {
-    bool flip = comparison->a.opaque_ids[p] != comparison->b.opaque_ids[p];
-    out->opaque_flips += flip;
-    int count_a = gather(&comparison->a, p, comparison->sequence_a);
-    int count_b = gather(&comparison->b, p, comparison->sequence_b);
-    if (count_a != count_b || memcmp(comparison->sequence_a, comparison->sequence_b,
-                                     (size_t)count_a * sizeof(uint32_t)) != 0) {
-        count_a = drop_repetitions(comparison->sequence_a, count_a);
-        count_b = drop_repetitions(comparison->sequence_b, count_b);
-        count_differences(comparison->sequence_a, count_a, comparison->sequence_b, count_b, out);
-        return STRUCTURE_DIFFERS;
+    Result result = RESULT_OK;
+    *out = (Sides){.count = count};
+    for (int i = 0; i < count && result == RESULT_OK; i++) {
+        result = layers_open(stores[i], &out->layers[i]);
+        if (result != RESULT_OK)
+            break;
+        out->ids[i] = memory_array((size_t)out->layers[i].count, sizeof(uint32_t));
+        result = out->ids[i] ? RESULT_OK : RESULT_NO_MEMORY;
     }
-    if (flip)
-        return STRUCTURE_DIFFERS;
-    return count_a == 0 && comparison->a.opaque_ids[p] == NONE ? STRUCTURE_EMPTY : STRUCTURE_SAME;
+    return result;
 }
 
-static Result compare_tiles(Comparison *comparison, int width, int height, uint8_t *same,
-                            StructureCounts *out)
+static void visit_pixel(Sides *sides, int p, size_t pixel, StructureVisit visit, void *context)
+{
+    StructurePixel pixels[STRUCTURE_STORES_MAX];
+    for (int i = 0; i < sides->count; i++)
+        pixels[i] = (StructurePixel){sides->layers[i].opaque_ids[p], sides->ids[i],
+                                     gather(&sides->layers[i], p, sides->ids[i])};
+    visit(context, pixel, pixels);
+}
+
+static Result visit_tiles(Sides *sides, int width, int height, StructureVisit visit, void *context)
 {
     for (int y = 0; y < height; y += TRACE_TILE)
         for (int x = 0; x < width; x += TRACE_TILE) {
             int w = width - x < TRACE_TILE ? width - x : TRACE_TILE;
             int h = height - y < TRACE_TILE ? height - y : TRACE_TILE;
-            Result result = layers_load(&comparison->a, x, y, w, h);
-            if (result == RESULT_OK)
-                result = layers_load(&comparison->b, x, y, w, h);
-            if (result != RESULT_OK)
-                return result;
+            for (int i = 0; i < sides->count; i++) {
+                Result result = layers_load(&sides->layers[i], x, y, w, h);
+                if (result != RESULT_OK)
+                    return result;
+            }
             for (int row = 0; row < h; row++)
                 for (int column = 0; column < w; column++)
-                    same[(size_t)(y + row) * (size_t)width + (size_t)(x + column)] =
-                        compare_pixel(comparison, row * TRACE_TILE + column, out);
+                    visit_pixel(sides, row * TRACE_TILE + column,
+                                (size_t)(y + row) * (size_t)width + (size_t)(x + column), visit,
+                                context);
         }
     return RESULT_OK;
+}
+
+Result structure_visit(const TraceStore *const stores[], int count, int width, int height,
+                       StructureVisit visit, void *context)
+{
+    Sides sides;
+    Result result = open_sides(stores, count, &sides);
+    if (result == RESULT_OK)
+        result = visit_tiles(&sides, width, height, visit, context);
+    for (int i = 0; i < count; i++) {
+        free(sides.ids[i]);
+        layers_free(&sides.layers[i]);
+    }
+    return result;
+}
+
+/* ---- two stores ---- */
+
+typedef struct Comparison {
+    uint8_t *same;
+    StructureCounts *counts;
+} Comparison;
+
+static StructureSame compare_sides(StructurePixel *a, StructurePixel *b, StructureCounts *out)
+{
+    bool flip = a->opaque != b->opaque;
+    out->opaque_flips += flip;
+    if (a->count != b->count || memcmp(a->ids, b->ids, (size_t)a->count * sizeof(uint32_t)) != 0) {
+        a->count = structure_drop_repetitions(a->ids, a->count);
+        b->count = structure_drop_repetitions(b->ids, b->count);
+        count_differences(a->ids, a->count, b->ids, b->count, out);
+        return STRUCTURE_DIFFERS;
+    }
+    if (flip)
+        return STRUCTURE_DIFFERS;
+    return a->count == 0 && a->opaque == NONE ? STRUCTURE_EMPTY : STRUCTURE_SAME;
+}
+
+static void compare_pixel(void *context, size_t pixel, StructurePixel *sides)
+{
+    Comparison *comparison = context;
+    comparison->same[pixel] = (uint8_t)compare_sides(&sides[0], &sides[1], comparison->counts);
 }
 
 Result structure_compare(const TraceStore *a, const TraceStore *b, int width, int height,
                          uint8_t *same, StructureCounts *out)
 {
+    const TraceStore *const stores[] = {a, b};
+    Comparison comparison = {same, out};
     *out = (StructureCounts){0};
-    Comparison comparison = {0};
-    Result result = layers_open(a, &comparison.a);
-    if (result == RESULT_OK)
-        result = layers_open(b, &comparison.b);
-    if (result == RESULT_OK) {
-        comparison.sequence_a = memory_array((size_t)comparison.a.count, sizeof(uint32_t));
-        comparison.sequence_b = memory_array((size_t)comparison.b.count, sizeof(uint32_t));
-        result = comparison.sequence_a && comparison.sequence_b
-                     ? compare_tiles(&comparison, width, height, same, out)
-                     : RESULT_NO_MEMORY;
-    }
-    free(comparison.sequence_a);
-    free(comparison.sequence_b);
-    layers_free(&comparison.a);
-    layers_free(&comparison.b);
-    return result;
+    return structure_visit(stores, 2, width, height, compare_pixel, &comparison);
 }

@@ -17,6 +17,29 @@ typedef enum StructureSame {
     STRUCTURE_EMPTY, /* both see only the background */
 } StructureSame;
 
+/* What one store has in a pixel. */
+typedef struct StructurePixel {
+    uint32_t opaque; /* UINT32_MAX: none */
+    uint32_t *ids;   /* of the transparent fragments, front to back */
+    int count;
+} StructurePixel;
+
+/* pixel: row · width + column, row 0 at the top; sides: one for each store. */
+typedef void (*StructureVisit)(void *context, size_t pixel, StructurePixel *sides);
+
+enum {
+    STRUCTURE_STORES_MAX = 4
+};
+
+/* Calls visit for every pixel, with what its opaque.primitive and peel.K.primitive, K = 0, 1, …,
+ * are in each of up to STRUCTURE_STORES_MAX stores of one size; visit may change the ids. */
+Result structure_visit(const TraceStore *const stores[], int count, int width, int height,
+                       StructureVisit visit, void *context);
+
+/* A layer that the raw peel test took again is no fragment more: drops repetitions from the ids and
+ * returns how many are left. */
+int structure_drop_repetitions(uint32_t *ids, int count);
+
 /* Compares opaque.primitive and peel.K.primitive, K = 0, 1, …, of two stores of one size.
  * same: width·height bytes, owned by the caller; a StructureSame each. */
 Result structure_compare(const TraceStore *a, const TraceStore *b, int width, int height,

@@ -127,6 +127,39 @@ static json_t *layers(Document *json, const Threeway *report)
     return object;
 }
 
+static json_t *budget_figure(Document *json, const BudgetFigure *figure)
+{
+    json_t *object = json_object();
+    document_put(json, object, "max_abs", real(figure->max_abs));
+    document_put(json, object, "rmse", real(figure->rmse));
+    document_put(json, object, "pixels", count(figure->pixels));
+    return object;
+}
+
+static json_t *budget(Document *json, const Budget *budget)
+{
+    json_t *object = json_object(), *terms = json_object();
+    for (int i = 0; i < BUDGET_TERMS; i++)
+        if (budget->terms[i].measured)
+            document_put(json, terms, budget_term_key((BudgetTerm)i),
+                         budget_figure(json, &budget->terms[i]));
+    document_put(json, object, "terms", terms);
+    document_put(json, object, "sum", budget_figure(json, &budget->sum));
+    document_put(json, object, "total", budget_figure(json, &budget->total));
+    document_put(json, object, "unexplained", budget_figure(json, &budget->unexplained));
+    document_put(json, object, "explained", real(budget->explained));
+    document_put(json, object, "nonfinite", count(budget->nonfinite));
+    return object;
+}
+
+static json_t *classes(Document *json, const Budget *budget)
+{
+    json_t *object = json_object();
+    for (int i = 0; i < CLASS_COUNT; i++)
+        document_put(json, object, class_key((PixelClass)i), count(budget->counts[i]));
+    return object;
+}
+
 static json_t *document(Document *json, const Threeway *report)
 {
     const Frame *ref = &report->frames[RENDERER_REF];
@@ -148,6 +181,10 @@ static json_t *document(Document *json, const Threeway *report)
     document_put(json, residual, "max", real(ref->residual_max));
     document_put(json, residual, "pixels", count(ref->residual_pixels));
     document_put(json, root, "residual", residual);
+    if (report->budget) {
+        document_put(json, root, "budget", budget(json, report->budget));
+        document_put(json, root, "classes", classes(json, report->budget));
+    }
     return root;
 }
 

@@ -4,6 +4,7 @@
 
 #include "compare/metrics.h"
 #include "frame/frame.h"
+#include "study/budget.h"
 
 enum {
     RENDERER_REF,
@@ -52,6 +53,7 @@ typedef struct Threeway {
     PeelPicture *peels;
     size_t peel_count; /* pictures kept, at most PEEL_PICTURES_MAX */
     bool agree;        /* the verdict: exit code 0 */
+    const Budget *budget; /* NULL: not asked for; the caller's */
 } Threeway;
 
 enum {
