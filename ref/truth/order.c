@@ -84,6 +84,7 @@ static bool find_fraction(Order *order, const Fragment *fragment, int which)
 static int compare_exact(Order *order, const Fragment *a, const Fragment *b)
 {
     order->counts.exact_comparisons++;
+    allocate(order);
     if (!find_fraction(order, a, 0) || !find_fraction(order, b, 1)) {
         assert(!"a fragment of a triangle with corners that are not finite");
         order->counts.undecided++;
