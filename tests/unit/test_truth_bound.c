@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "ref/truth/coverage.h"
 #include "ref/truth/order.h"
+#include "truth_rational.h"
 #include "truth_stage.h"
 
 #include <math.h>
@@ -92,7 +93,7 @@ static Matrix random_world(Random *random, Kind kind)
     Matrix turn = matrix_rotate_y(random_range(random, -0.3, 0.3));
     Matrix move = matrix_translate(kind == KIND_FAR ? -1e5 : random_range(random, -0.3, 0.3),
                                    random_range(random, -0.3, 0.3), 0);
-    return kind == KIND_FAR ? move : matrix_multiply(&turn, &move);
+    return matrix_multiply(&turn, &move);
 }
 
 static Case *case_new(uint64_t seed, Kind kind)
@@ -133,157 +134,6 @@ static void case_free(Case *c)
     view_free(&c->view);
     free(c->stage);
     free(c);
-}
-
-/* ---- rational numbers ----------------------------------------------------------------------- */
-
-/* A triangle's corners in the window: x, y and window depth, divided by w; and w. */
-typedef struct Window {
-    mpq_t x[3], y[3], z[3], w[3];
-    bool usable; /* no w is 0 */
-} Window;
-
-enum {
-    WINDOW_NUMBERS = 12
-};
-
-static void row_times_point(const float *matrix, int stride, int row, mpq_t point[4], mpq_t out)
-{
-    mpq_t factor;
-    mpq_init(factor);
-    mpq_set_ui(out, 0, 1);
-    for (int column = 0; column < 4; column++) {
-        mpq_set_d(factor, matrix[stride * column + row]);
-        mpq_mul(factor, factor, point[column]);
-        mpq_add(out, out, factor);
-    }
-    mpq_clear(factor);
-}
-
-/* (a/w + 1) · scale / 2 */
-static void to_window(mpq_t a, mpq_t w, int scale, mpq_t out)
-{
-    mpq_t half;
-    mpq_init(half);
-    mpq_set_ui(half, (unsigned long)scale, 2);
-    mpq_canonicalize(half);
-    mpq_div(out, a, w);
-    mpq_mul(out, out, half);
-    mpq_add(out, out, half);
-    mpq_clear(half);
-}
-
-static void window_corner(const View *view, const float *position, int corner, Window *out)
-{
-    mpq_t point[4], moved[4], clip[4];
-    for (int i = 0; i < 4; i++) {
-        mpq_inits(point[i], moved[i], clip[i], NULL);
-        mpq_set_d(point[i], i < 3 ? position[i] : 1.0);
-    }
-    for (int i = 0; i < 4; i++)
-        row_times_point(view->draws[0].model_view, 4, i, point, moved[i]);
-    for (int i = 0; i < 4; i++)
-        row_times_point(view->projection, 4, i, moved, clip[i]);
-    if (mpq_sgn(clip[3]) == 0) {
-        out->usable = false;
-    } else {
-        to_window(clip[0], clip[3], view->width, out->x[corner]);
-        to_window(clip[1], clip[3], view->height, out->y[corner]);
-        mpq_set(out->w[corner], clip[3]);
-        mpq_t *depth = &out->z[corner];
-        if (view->depth_range == DEPTH_RANGE_GL)
-            to_window(clip[2], clip[3], 1, *depth);
-        else
-            mpq_div(*depth, clip[2], clip[3]);
-        if (view->depth_range == DEPTH_RANGE_REVERSED) {
-            mpq_set_ui(point[0], 1, 1);
-            mpq_sub(*depth, point[0], *depth);
-        }
-    }
-    for (int i = 0; i < 4; i++)
-        mpq_clears(point[i], moved[i], clip[i], NULL);
-}
-
-static void window_init(const Case *c, uint32_t triangle, Window *out)
-{
-    mpq_t *numbers = out->x;
-    for (int i = 0; i < WINDOW_NUMBERS; i++)
-        mpq_init(numbers[i]);
-    out->usable = true;
-    for (int corner = 0; corner < 3; corner++)
-        window_corner(&c->view, &c->position[9 * triangle + 3 * (uint32_t)corner], corner, out);
-}
-
-static void window_free(Window *window)
-{
-    mpq_t *numbers = window->x;
-    for (int i = 0; i < WINDOW_NUMBERS; i++)
-        mpq_clear(numbers[i]);
-}
-
-/* Twice the signed area of corners j, k and the point. */
-static void area(mpq_t xj, mpq_t yj, mpq_t xk, mpq_t yk, mpq_t x, mpq_t y, mpq_t out)
-{
-    mpq_t a, b;
-    mpq_inits(a, b, NULL);
-    mpq_sub(a, xj, x);
-    mpq_sub(b, yk, y);
-    mpq_mul(out, a, b);
-    mpq_sub(a, xk, x);
-    mpq_sub(b, yj, y);
-    mpq_mul(a, a, b);
-    mpq_sub(out, out, a);
-    mpq_clears(a, b, NULL);
-}
-
-typedef struct Answer {
-    bool has_depth, inside, on_edge;
-    mpq_t depth; /* clamped */
-} Answer;
-
-static void clamp(mpq_t depth)
-{
-    if (mpq_sgn(depth) < 0)
-        mpq_set_ui(depth, 0, 1);
-    if (mpq_cmp_ui(depth, 1, 1) > 0)
-        mpq_set_ui(depth, 1, 1);
-}
-
-/* Window depth is linear over the window, and so is 1/w; corner i's share of a point of the window
- * is area i over the sum, and its perspective-correct weight that over w times a positive number.
- */
-static void answer(Window *window, int px, int py, Answer *out)
-{
-    mpq_t x, y, part, sum, depth, inverse_w;
-    mpq_inits(x, y, part, sum, depth, inverse_w, NULL);
-    mpq_set_d(x, px + 0.5);
-    mpq_set_d(y, py + 0.5);
-    int share[3], w_sign[3];
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        area(window->x[j], window->y[j], window->x[k], window->y[k], x, y, part);
-        mpq_add(sum, sum, part);
-        share[i] = mpq_sgn(part);
-        w_sign[i] = mpq_sgn(window->w[i]);
-        mpq_mul(out->depth, part, window->z[i]);
-        mpq_add(depth, depth, out->depth);
-        mpq_div(out->depth, part, window->w[i]);
-        mpq_add(inverse_w, inverse_w, out->depth);
-    }
-    int orientation = mpq_sgn(sum);
-    out->has_depth = orientation != 0 && mpq_sgn(inverse_w) == orientation;
-    out->inside = out->has_depth;
-    out->on_edge = false;
-    for (int i = 0; i < 3; i++) {
-        out->inside = out->inside && share[i] * w_sign[i] * orientation > 0;
-        out->on_edge = out->on_edge || share[i] == 0;
-    }
-    if (out->has_depth) {
-        mpq_div(out->depth, depth, sum);
-        out->inside = out->inside && mpq_sgn(out->depth) >= 0 && mpq_cmp_ui(out->depth, 1, 1) <= 0;
-        clamp(out->depth);
-    }
-    mpq_clears(x, y, part, sum, depth, inverse_w, NULL);
 }
 
 /* ---- tests ---------------------------------------------------------------------------------- */
@@ -377,6 +227,43 @@ static int between(mpq_t corners[3], double share, int size, int other)
     return place >= 0.0 && place < size ? (int)place : other;
 }
 
+/* A corner's number against the rational one, given divided by w. */
+static void check_number(double got, double error, mpq_t scaled, mpq_t w, const char *name)
+{
+    mpq_t exact;
+    mpq_init(exact);
+    mpq_mul(exact, scaled, w);
+    double distant = distance(got, exact);
+    EXPECT(distant <= error, "%s: %a is %g off, bound %g", name, got, distant, error);
+    mpq_clear(exact);
+}
+
+START_TEST(test_corners)
+{
+    Case *c = case_new((uint64_t)_i / KIND_COUNT, (Kind)(_i % KIND_COUNT));
+    mpq_t one, z;
+    mpq_inits(one, z, NULL);
+    mpq_set_ui(one, 1, 1);
+    for (uint32_t triangle = 0; triangle < TRIANGLES; triangle++) {
+        Window window;
+        window_init(&c->view, &c->position[9 * triangle], &window);
+        for (int i = 0; i < 3 && window.usable; i++) {
+            const SoupVertex *vertex = &c->soup.vertices[3 * triangle + (uint32_t)i];
+            const Corner *corner = &vertex->corner, *error = &vertex->error;
+            check_number(corner->x, error->x, window.x[i], window.w[i], "x");
+            check_number(corner->y, error->y, window.y[i], window.w[i], "y");
+            mpq_add(z, window.z[i], window.z[i]);
+            mpq_sub(z, z, one);
+            check_number(corner->z, error->z, z, window.w[i], "z");
+            check_number(corner->w, error->w, one, window.w[i], "w");
+        }
+        window_free(&window);
+    }
+    mpq_clears(one, z, NULL);
+    case_free(c);
+}
+END_TEST
+
 static int compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
@@ -393,8 +280,8 @@ START_TEST(test_against_rationals)
         Random random = random_seed(seed);
         for (uint32_t first = 0; first < TRIANGLES; first += 2) {
             Window windows[2];
-            window_init(c, first, &windows[0]);
-            window_init(c, first + 1, &windows[1]);
+            window_init(&c->view, &c->position[9 * first], &windows[0]);
+            window_init(&c->view, &c->position[9 * first + 9], &windows[1]);
             for (int i = 0; i < POINTS && windows[0].usable && windows[1].usable; i++) {
                 int x = (int)(random_bits(&random) % WIDTH);
                 int y = (int)(random_bits(&random) % HEIGHT);
@@ -474,6 +361,7 @@ int main(void)
     TCase *tests = tcase_create("bound");
     tcase_set_timeout(tests, 300);
     tcase_add_loop_test(tests, test_against_rationals, 0, KIND_COUNT);
+    tcase_add_loop_test(tests, test_corners, 0, 12 * KIND_COUNT);
     tcase_add_test(tests, test_inside_on_edges);
     suite_add_tcase(suite, tests);
     return testing_run(suite);
