@@ -44,10 +44,8 @@ static void bound_determinant(const SoupVertex *const vertices[3], const double 
     out->determinant = low >= DETERMINANT_MIN && isfinite(low) ? low : -1.0;
 }
 
-/* Both coordinates' error after the division by w. */
-static double window_error(const SoupVertex *vertex)
+double bound_window(const Corner *corner, const Corner *error)
 {
-    const Corner *corner = &vertex->corner, *error = &vertex->error;
     double low = corner->w - error->w;
     if (!(low > 0.5 * corner->w))
         return INFINITY;
@@ -68,7 +66,7 @@ void bound_setup(const SoupVertex *const vertices[3], BoundRect rect, Bound *out
         out->q[i] = corner->z + corner->w;
         out->q_error[i] = error->z + error->w + ROUNDING * fabs(out->q[i]) + 0x1p-1074;
         out->d_error[i] = 2 * (error->w + ROUNDING * fabs(corner->w));
-        out->snapping_error = fmax(out->snapping_error, window_error(vertices[i]));
+        out->snapping_error = fmax(out->snapping_error, bound_window(corner, error));
     }
     double edge[3];
     for (int i = 0; i < 3; i++) {

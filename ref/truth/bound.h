@@ -47,6 +47,10 @@ typedef struct BoundRect {
     int x_low, x_high, y_low, y_high;
 } BoundRect;
 
+/* How much the window coordinates of a corner err, x/w and y/w, in pixels, with a few roundings on
+ * top; infinity where w may not be positive. */
+double bound_window(const Corner *corner, const Corner *error);
+
 void bound_setup(const SoupVertex *const vertices[3], BoundRect rect, Bound *out);
 
 /* point: by exact_at, at a pixel of the rectangle. */

@@ -215,7 +215,7 @@ static Result raster_triangle(Raster *raster)
         raster->corners[i] = &vertices[i]->corner;
     int height = raster->soup->view->height;
     Coverage *coverage = &raster->coverage;
-    if (!coverage_setup(raster->corners, raster->soup->view->width, height, coverage))
+    if (!soup_coverage(raster->soup, vertices, coverage))
         return RESULT_OK;
     const TileFragments *tile = raster->fragments;
     int x_low = tile->x, x_high = tile->x + tile->width - 1;

@@ -174,26 +174,46 @@ static void shorten(PlaneWork *work)
         mpz_tdiv_q_2exp(groups[i / 3][i % 3], groups[i / 3][i % 3], zeros);
 }
 
-static bool set_corners(const Soup *soup, uint32_t triangle, PlaneWork *work)
+static bool set_matrices(const View *view, const Draw *draw, Exponents *exponents, PlaneWork *work)
 {
-    const SoupDraw *draw = soup_draw(soup, triangle);
-    const float *model_view = draw->draw->model_view, *projection = soup->view->projection;
-    const uint32_t *index = &draw->mesh->index[(size_t)(triangle - draw->first_triangle) * 3];
-    Exponents exponents = {0, 0, 0};
-    bool finite = least_exponent(projection, 16, &exponents.projection);
+    bool finite = least_exponent(view->projection, 16, &exponents->projection);
     for (int column = 0; column < 4; column++)
-        finite = finite && least_exponent(&model_view[4 * column], 3, &exponents.model_view);
-    for (int i = 0; i < 3; i++)
-        finite = finite && least_exponent(&draw->mesh->position[3 * (size_t)index[i]], 3,
-                                          &exponents.position);
+        finite = finite && least_exponent(&draw->model_view[4 * column], 3, &exponents->model_view);
     if (!finite)
         return false;
     for (int i = 0; i < 12; i++)
-        to_integer(model_view[4 * (i / 3) + i % 3], exponents.model_view, work->model_view[i]);
+        to_integer(draw->model_view[4 * (i / 3) + i % 3], exponents->model_view,
+                   work->model_view[i]);
     for (int i = 0; i < 16; i++)
-        to_integer(projection[i], exponents.projection, work->projection[i]);
+        to_integer(view->projection[i], exponents->projection, work->projection[i]);
+    return true;
+}
+
+bool plane_corner(const View *view, const Draw *draw, const float *position, PlaneWork *work)
+{
+    Exponents exponents = {0, 0, 0};
+    if (!set_matrices(view, draw, &exponents, work) ||
+        !least_exponent(position, 3, &exponents.position))
+        return false;
+    set_corner(view, position, exponents, 0, work);
+    return true;
+}
+
+static bool set_corners(const Soup *soup, uint32_t triangle, PlaneWork *work)
+{
+    const SoupDraw *draw = soup_draw(soup, triangle);
+    const uint32_t *index = &draw->mesh->index[(size_t)(triangle - draw->first_triangle) * 3];
+    const float *positions[3];
+    Exponents exponents = {0, 0, 0};
+    bool finite = set_matrices(soup->view, draw->draw, &exponents, work);
+    for (int i = 0; i < 3; i++) {
+        positions[i] = &draw->mesh->position[3 * (size_t)index[i]];
+        finite = finite && least_exponent(positions[i], 3, &exponents.position);
+    }
+    if (!finite)
+        return false;
     for (int i = 0; i < 3; i++)
-        set_corner(soup->view, &draw->mesh->position[3 * (size_t)index[i]], exponents, i, work);
+        set_corner(soup->view, positions[i], exponents, i, work);
     shorten(work);
     return true;
 }

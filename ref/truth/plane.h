@@ -44,11 +44,14 @@ typedef struct Plane {
     bool clockwise;    /* D was negative */
 } Plane;
 
-/* Both allocate; the second call frees. */
+/* The first of each pair allocates, the second frees. */
 void plane_work_init(PlaneWork *work);
 void plane_work_free(PlaneWork *work);
 void plane_init(Plane *plane);
 void plane_free(Plane *plane);
+
+/* Makes corner 0 of work that of one position (3 floats). False as below. */
+bool plane_corner(const View *view, const Draw *draw, const float *position, PlaneWork *work);
 
 /* False when a position or a matrix has an infinity or NaN. */
 bool plane_setup(const Soup *soup, uint32_t triangle, PlaneWork *work, Plane *out);

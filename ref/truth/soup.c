@@ -1,9 +1,10 @@
 #include "ref/truth/soup.h"
 
 #include "base/memory.h"
-#include "ref/truth/coverage.h"
+#include "ref/truth/snap.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum {
@@ -18,6 +19,7 @@ typedef struct TileRange {
 typedef struct Build {
     Soup *soup;
     TileRange *ranges; /* one per triangle */
+    _Atomic uint64_t exact_snaps;
 } Build;
 
 Result soup_check_memory(size_t needed, size_t limit)
@@ -94,6 +96,13 @@ void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3]
         out[i] = &soup->vertices[draw->first_vertex + index[i]];
 }
 
+bool soup_coverage(const Soup *soup, const SoupVertex *const vertices[3], Coverage *out)
+{
+    const Corner *corners[3] = {&vertices[0]->corner, &vertices[1]->corner, &vertices[2]->corner};
+    const Snap snaps[3] = {vertices[0]->snap, vertices[1]->snap, vertices[2]->snap};
+    return coverage_setup_snapped(corners, snaps, soup->view->width, soup->view->height, out);
+}
+
 void soup_material(const Soup *soup, uint32_t triangle, const double weight[3], MaterialSample *out)
 {
     const SoupDraw *draw = soup_draw(soup, triangle);
@@ -150,7 +159,7 @@ static double to_window(double a, double b, double a_error, double b_error, int 
 }
 
 static SoupVertex transform(const View *view, const Draw *draw, const float *position,
-                            const float *normal)
+                            const float *normal, bool *exact_snap)
 {
     SoupVertex vertex;
     double view_error[3], clip[4], error[4];
@@ -175,13 +184,17 @@ static SoupVertex transform(const View *view, const Draw *draw, const float *pos
     bound->y *= EXACT_SLACK;
     bound->z = error[2] * EXACT_SLACK;
     bound->w = error[3] * EXACT_SLACK;
+    vertex.snap = snap_vertex(view, draw, position, corner, bound, exact_snap);
     return vertex;
 }
 
 static Result vertex_task(void *context, uint32_t index, int worker)
 {
     (void)worker;
-    Soup *soup = ((Build *)context)->soup;
+    Build *build = context;
+    Soup *soup = build->soup;
+    bool exact_snap;
+    uint64_t exact_snaps = 0;
     size_t first = (size_t)index * CHUNK;
     size_t end = first + CHUNK < soup->vertex_count ? first + CHUNK : soup->vertex_count;
     const SoupDraw *draw = find_draw(soup, first, true);
@@ -190,8 +203,10 @@ static Result vertex_task(void *context, uint32_t index, int worker)
             draw++;
         size_t local = 3 * (i - draw->first_vertex);
         soup->vertices[i] = transform(soup->view, draw->draw, &draw->mesh->position[local],
-                                      &draw->mesh->normal[local]);
+                                      &draw->mesh->normal[local], &exact_snap);
+        exact_snaps += exact_snap;
     }
+    atomic_fetch_add(&build->exact_snaps, exact_snaps);
     return RESULT_OK;
 }
 
@@ -201,10 +216,9 @@ static TileRange tile_range(const Soup *soup, uint32_t triangle)
 {
     const SoupVertex *vertices[3];
     soup_vertices(soup, triangle, vertices);
-    const Corner *corners[3] = {&vertices[0]->corner, &vertices[1]->corner, &vertices[2]->corner};
-    int width = soup->view->width, height = soup->view->height;
+    int height = soup->view->height;
     Coverage coverage;
-    if (!coverage_setup(corners, width, height, &coverage))
+    if (!soup_coverage(soup, vertices, &coverage))
         return (TileRange){1, 0, 1, 0};
     return (TileRange){(uint16_t)(coverage.x_low / TRACE_TILE),
                        (uint16_t)(coverage.x_high / TRACE_TILE),
@@ -274,11 +288,12 @@ Result soup_build(const Scene *scene, const View *view, Pool *pool, size_t max_b
     size_t tiles = (size_t)out->tile_columns * (size_t)out->tile_rows;
     out->vertices = memory_array(out->vertex_count, sizeof *out->vertices);
     out->tile_first = memory_array(tiles + 1, sizeof *out->tile_first);
-    Build build = {out, memory_array(out->triangle_count, sizeof(TileRange))};
+    Build build = {.soup = out, .ranges = memory_array(out->triangle_count, sizeof(TileRange))};
     if (!out->vertices || !out->tile_first || !build.ranges)
         result = RESULT_NO_MEMORY;
     if (result == RESULT_OK)
         result = pool_run(pool, chunks(out->vertex_count), vertex_task, &build);
+    out->exact_snaps = build.exact_snaps;
     if (result == RESULT_OK)
         result = pool_run(pool, chunks(out->triangle_count), range_task, &build);
     if (result == RESULT_OK)

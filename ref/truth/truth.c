@@ -206,6 +206,7 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
     if (result == RESULT_OK)
         result = pool_run(pool, tiles, tile_task, render);
     Frame *frame = render->frame;
+    frame->layers.exact_coverage = render->soup.exact_snaps;
     frame->buffer_bytes = fixed;
     for (size_t i = 0; i < threads && render->workers[i]; i++) {
         WorkerState *worker = render->workers[i];

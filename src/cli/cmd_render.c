@@ -161,7 +161,7 @@ static void print_summary(const RenderCommand *command, const Frame *frame)
     if (command->renderer == RENDERER_TRUTH)
         printf(
             "order: %llu comparisons, %llu of them in exact arithmetic, %llu ties, %llu undecided; "
-            "unsnapped coverage: %llu in exact arithmetic\n",
+            "coverage: %llu in exact arithmetic\n",
             (unsigned long long)layers->comparisons, (unsigned long long)layers->exact_comparisons,
             (unsigned long long)layers->ties, (unsigned long long)layers->undecided,
             (unsigned long long)layers->exact_coverage);

@@ -22,7 +22,7 @@ typedef struct LayerStats {
     uint64_t exact_comparisons;  /* of those, decided in exact arithmetic */
     uint64_t ties;               /* truth: fragments at exactly the depth of the one in front */
     uint64_t undecided;          /* truth: comparisons without a result; 0 */
-    uint64_t exact_coverage;     /* truth: unsnapped coverage decided in exact arithmetic */
+    uint64_t exact_coverage;     /* truth: coverage decided in exact arithmetic, snapped or not */
     uint64_t overflowed;         /* pixels with a sum that left its format's range */
 } LayerStats;
 

@@ -1,8 +1,8 @@
 /* ref/truth's bounds and exact planes on random triangles, against rational numbers computed here
  * in another way: corners divided by their w, and a plane through three points of the window. */
 #include "base/random.h"
-#include "ref/truth/coverage.h"
 #include "ref/truth/order.h"
+#include "ref/truth/snap.h"
 #include "truth_rational.h"
 #include "truth_stage.h"
 
@@ -96,6 +96,17 @@ static Matrix random_world(Random *random, Kind kind)
     return matrix_multiply(&turn, &move);
 }
 
+/* View and soup, again after changes. */
+static void case_build(Case *c, RenderDesc desc)
+{
+    soup_free(&c->soup);
+    view_free(&c->view);
+    ck_assert_int_eq(view_build(&c->stage->scene, &desc, &c->view), RESULT_OK);
+    Pool *pool = pool_create(1);
+    ck_assert_int_eq(soup_build(&c->stage->scene, &c->view, pool, SIZE_MAX, &c->soup), RESULT_OK);
+    pool_destroy(pool);
+}
+
 static Case *case_new(uint64_t seed, Kind kind)
 {
     Case *c = calloc(1, sizeof *c);
@@ -116,11 +127,8 @@ static Case *case_new(uint64_t seed, Kind kind)
         c->stage->camera.near = 1e-4;
         c->stage->camera.far = 1e4;
     }
-    RenderDesc desc = {.width = WIDTH, .height = HEIGHT, .depth_range = (DepthRange)(seed % 3)};
-    ck_assert_int_eq(view_build(&c->stage->scene, &desc, &c->view), RESULT_OK);
-    Pool *pool = pool_create(1);
-    ck_assert_int_eq(soup_build(&c->stage->scene, &c->view, pool, SIZE_MAX, &c->soup), RESULT_OK);
-    pool_destroy(pool);
+    case_build(
+        c, (RenderDesc){.width = WIDTH, .height = HEIGHT, .depth_range = (DepthRange)(seed % 3)});
     c->filtered.soup = c->always.soup = &c->soup;
     c->always.always_exact = true;
     return c;
@@ -264,6 +272,76 @@ START_TEST(test_corners)
 }
 END_TEST
 
+/* (window − 1/2) · 256 to the nearest integer, ties to even. */
+static int64_t nearest_subpixel(mpq_t window)
+{
+    mpq_t scaled;
+    mpz_t below, rest;
+    mpq_init(scaled);
+    mpz_inits(below, rest, NULL);
+    mpz_mul_ui(mpq_numref(scaled), mpq_numref(window), 256);
+    mpz_submul_ui(mpq_numref(scaled), mpq_denref(window), 128);
+    mpz_fdiv_qr(below, rest, mpq_numref(scaled), mpq_denref(window));
+    mpz_mul_2exp(rest, rest, 1);
+    int half = mpz_cmp(rest, mpq_denref(window));
+    int64_t nearest = mpz_get_si(below) + (half > 0 || (half == 0 && mpz_odd_p(below)));
+    mpq_clear(scaled);
+    mpz_clears(below, rest, NULL);
+    return nearest;
+}
+
+/* Returns whether the double decided. */
+static bool check_snap(const Case *c, uint32_t vertex, Window *window, int corner, double blur)
+{
+    const SoupVertex *v = &c->soup.vertices[vertex];
+    Corner error = v->error;
+    error.x += blur * v->corner.w; /* in pixels: leaves it to the integers */
+    bool exact;
+    Snap snap = snap_vertex(&c->view, &c->view.draws[0], &c->position[3 * vertex], &v->corner,
+                            &error, &exact);
+    if (!snap.known) {
+        double x = v->corner.x / v->corner.w, y = v->corner.y / v->corner.w;
+        EXPECT(!(v->corner.w > 1e-9 && fabs(x) < 1e6 && fabs(y) < 1e6), "vertex %u: %g %g unknown",
+               vertex, x, y);
+        return false;
+    }
+    EXPECT(snap.x == nearest_subpixel(window->x[corner]) &&
+               snap.y == nearest_subpixel(window->y[corner]),
+           "vertex %u: snapped to %d, %d", vertex, snap.x, snap.y);
+    return !exact;
+}
+
+START_TEST(test_snapping)
+{
+    static const double blur[2] = {0.0, 0.01};
+    uint64_t by_double = 0, by_integers = 0;
+    Case *c = case_new((uint64_t)_i / KIND_COUNT, (Kind)(_i % KIND_COUNT));
+    bool ties = _i == 0;
+    for (int i = 0; i < 9 * TRIANGLES && ties;
+         i++) /* 47 times an odd number of half subpixels up */
+        c->position[i] = i % 3 == 2 ? -2.0f : (float)(2 * (i % 100) - 99) / 128;
+    if (ties) {
+        c->stage->instances[0].world = matrix_identity();
+        case_build(c, (RenderDesc){.width = WIDTH, .height = HEIGHT});
+        ck_assert_uint_eq(c->soup.exact_snaps, 3 * TRIANGLES);
+    }
+    for (uint32_t vertex = 0; vertex < 3 * TRIANGLES; vertex++) {
+        Window window;
+        window_init(&c->view, &c->position[9 * (vertex / 3)], &window);
+        for (int i = 0; i < 2 && window.usable; i++) {
+            bool decided = check_snap(c, vertex, &window, (int)(vertex % 3), blur[i]);
+            by_double += decided;
+            by_integers += !decided && c->soup.vertices[vertex].snap.known;
+        }
+        window_free(&window);
+    }
+    bool is_tiny = _i % KIND_COUNT == KIND_TINY; /* most are too close to the eye's plane */
+    ck_assert(ties ? by_double == 0 : by_double >= 10 || is_tiny);
+    ck_assert(by_integers >= 10 || is_tiny);
+    case_free(c);
+}
+END_TEST
+
 static int compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
@@ -325,13 +403,7 @@ START_TEST(test_inside_on_edges)
     for (int i = 0; i < 9 * TRIANGLES; i++) /* in the plane at distance 2: w is 2 */
         c->position[i] = i % 3 == 2 ? -2.0f : (float)(random_bits(&random) % 32) / 8 - 1.9375f;
     c->stage->instances[0].world = matrix_identity();
-    soup_free(&c->soup);
-    view_free(&c->view);
-    RenderDesc desc = {.width = SIZE, .height = SIZE};
-    ck_assert_int_eq(view_build(&c->stage->scene, &desc, &c->view), RESULT_OK);
-    Pool *pool = pool_create(1);
-    ck_assert_int_eq(soup_build(&c->stage->scene, &c->view, pool, SIZE_MAX, &c->soup), RESULT_OK);
-    pool_destroy(pool);
+    case_build(c, (RenderDesc){.width = SIZE, .height = SIZE});
     const Bound nothing = {.edge = {INFINITY, INFINITY, INFINITY}, .determinant = -1.0};
     int on_edge = 0;
     for (uint32_t triangle = 0; triangle < TRIANGLES; triangle++) {
@@ -362,6 +434,7 @@ int main(void)
     tcase_set_timeout(tests, 300);
     tcase_add_loop_test(tests, test_against_rationals, 0, KIND_COUNT);
     tcase_add_loop_test(tests, test_corners, 0, 12 * KIND_COUNT);
+    tcase_add_loop_test(tests, test_snapping, 0, 3 * KIND_COUNT);
     tcase_add_test(tests, test_inside_on_edges);
     suite_add_tcase(suite, tests);
     return testing_run(suite);
