@@ -7,7 +7,8 @@
 
 enum {
     SIDE = 33, /* odd: the middle column and row look along the axes */
-    SIXTEENTHS = 16
+    SIXTEENTHS = 16,
+    PLANES_MAX = 40
 };
 
 /* The plane at distance (c + a·x + b·y)/16 from the camera, as seen through the stage's camera. */
@@ -35,20 +36,19 @@ static int fraction_compare(Fraction a, Fraction b)
     return (left > right) - (left < right);
 }
 
+typedef struct HandScene {
+    Stage *stage;
+    float position[9 * PLANES_MAX];
+    uint32_t index[3 * PLANES_MAX];
+} HandScene;
+
 /* A triangle of the plane that covers the view volume, with corners on a grid of eighths: each
  * coordinate is a float. */
-static void add_plane(Stage *stage, HandPlane plane, bool opaque, Random *random)
+static void random_corners(HandPlane plane, Random *random, float *p)
 {
     static const int base[3][2] = {{-128, -64}, {128, -64}, {0, 192}};
-    static uint32_t index[3] = {0, 1, 2};
-    size_t i = stage->scene.mesh_count;
-    add_quad(stage, 2, 1, opaque ? blue : red)->double_sided = true;
-    stage->meshes[i].vertex_count = 3;
-    stage->meshes[i].triangle_count = 1;
-    stage->meshes[i].index = index;
     uint64_t first = random_bits(random) % 3;
-    for (uint64_t corner = 0; corner < 3; corner++) {
-        float *p = &stage->positions[i][3 * corner];
+    for (uint64_t corner = 0; corner < 3; corner++, p += 3) {
         int x = base[(corner + first) % 3][0] + (int)(random_bits(random) % 33) - 16;
         int y = base[(corner + first) % 3][1] + (int)(random_bits(random) % 33) - 16;
         p[0] = (float)x / 8;
@@ -57,9 +57,41 @@ static void add_plane(Stage *stage, HandPlane plane, bool opaque, Random *random
     }
 }
 
+/* Triangles first … end − 1 as a mesh, so that primitive ids are the planes' numbers. */
+static void add_run(HandScene *scene, int first, int end, bool opaque)
+{
+    if (first >= end)
+        return;
+    Stage *stage = scene->stage;
+    Mesh *mesh = &stage->meshes[stage->scene.mesh_count];
+    add_quad(stage, 2, 1, opaque ? blue : red)->double_sided = true;
+    float *position = &scene->position[(ptrdiff_t)9 * first];
+    *mesh = (Mesh){.vertex_count = 3 * (uint32_t)(end - first),
+                   .triangle_count = (uint32_t)(end - first),
+                   .position = position,
+                   .normal = position,
+                   .index = scene->index};
+}
+
+/* Plane `opaque` is opaque, −1: none. */
+static HandScene *scene_new(const HandPlane *planes, int count, int opaque, uint64_t seed)
+{
+    HandScene *scene = calloc(1, sizeof *scene);
+    Random random = random_seed(seed);
+    scene->stage = stage_new();
+    for (uint32_t i = 0; i < 3 * PLANES_MAX; i++)
+        scene->index[i] = i;
+    for (int i = 0; i < count; i++)
+        random_corners(planes[i], &random, &scene->position[9 * i]);
+    add_run(scene, 0, opaque < 0 ? count : opaque, false);
+    add_run(scene, opaque, opaque < 0 ? opaque : opaque + 1, true);
+    add_run(scene, opaque < 0 ? count : opaque + 1, count, false);
+    return scene;
+}
+
 /* The triangles at a pixel, nearest first, ties by the depth function. */
 static void hand_sort(const HandPlane *planes, int count, DepthFunc func, int x, int y,
-                      int sorted[ITEMS_MAX])
+                      int sorted[PLANES_MAX])
 {
     for (int i = 0; i < count; i++) {
         Fraction distance = hand_distance(planes[i], x, y);
@@ -105,22 +137,19 @@ static void check_pixel(const Layers *layers, const HandPlane *planes, const int
            opaque);
 }
 
-/* Plane `opaque` is opaque, −1: none. Returns truth's counts. */
+/* Returns truth's counts. */
 static LayerStats check_planes(const HandPlane *planes, int count, int opaque, RenderDesc desc,
                                uint64_t seed)
 {
-    Stage *stage = stage_new();
-    Random random = random_seed(seed);
-    for (int i = 0; i < count; i++)
-        add_plane(stage, planes[i], i == opaque, &random);
+    HandScene *scene = scene_new(planes, count, opaque, seed);
     Layers layers = {.sink.put = layers_put};
     Frame frame;
     desc.width = desc.height = SIDE;
     desc.threads = 1;
-    ck_assert_int_eq(truth_render(&stage->scene, &desc, &layers.sink, &frame), RESULT_OK);
+    ck_assert_int_eq(truth_render(&scene->stage->scene, &desc, &layers.sink, &frame), RESULT_OK);
     uint64_t ties = 0;
     for (int pixel = 0; pixel < SIDE * SIDE; pixel++) {
-        int sorted[ITEMS_MAX];
+        int sorted[PLANES_MAX];
         hand_sort(planes, count, desc.depth_func, pixel % SIDE, pixel / SIDE, sorted);
         check_pixel(&layers, planes, sorted, count, opaque, pixel % SIDE, pixel / SIDE, &ties);
     }
@@ -130,7 +159,8 @@ static LayerStats check_planes(const HandPlane *planes, int count, int opaque, R
     ck_assert_uint_le(stats.exact_comparisons, stats.comparisons);
     frame_free(&frame);
     layers_free(&layers);
-    free(stage);
+    free(scene->stage);
+    free(scene);
     return stats;
 }
 
@@ -173,14 +203,15 @@ END_TEST
 START_TEST(test_random_planes)
 {
     Random random = random_seed((uint64_t)_i + 1);
-    HandPlane planes[ITEMS_MAX];
-    for (int i = 0; i < ITEMS_MAX; i++)
+    HandPlane planes[PLANES_MAX];
+    int count = _i % 5 == 0 ? PLANES_MAX : 8;
+    for (int i = 0; i < count; i++)
         planes[i] =
             (HandPlane){(int)(random_bits(&random) % 5) - 2, (int)(random_bits(&random) % 5) - 2,
                         31 + (int)(random_bits(&random) % 3)};
     RenderDesc desc = {.depth_func = (DepthFunc)(_i % 2), .depth_range = (DepthRange)(_i % 3)};
-    int opaque = _i % 4 == 0 ? (int)(random_bits(&random) % ITEMS_MAX) : -1;
-    LayerStats stats = check_planes(planes, ITEMS_MAX, opaque, desc, (uint64_t)_i + 100);
+    int opaque = _i % 4 == 0 ? (int)(random_bits(&random) % (uint64_t)count) : -1;
+    LayerStats stats = check_planes(planes, count, opaque, desc, (uint64_t)_i + 100);
     ck_assert_uint_gt(stats.ties, 0);
 }
 END_TEST
