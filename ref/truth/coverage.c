@@ -1,10 +1,12 @@
 #include "ref/truth/coverage.h"
 
 #include <math.h>
+#include <stddef.h>
 
 enum {
     SUBPIXELS = 256,
-    PLANES = 6
+    PLANES = 6,
+    NEW = -1
 };
 
 /* Range of the integers below: clipping leaves window coordinates in 0 … 16384 = 2^14 (snap clamps
@@ -13,8 +15,17 @@ enum {
 
 typedef struct Polygon {
     Corner corners[COVERAGE_CORNERS_MAX];
+    int vertex[COVERAGE_CORNERS_MAX]; /* of the triangle; NEW where clipping made the corner */
     int count;
 } Polygon;
+
+static void push(Polygon *polygon, Corner corner, int vertex)
+{
+    if (polygon->count == COVERAGE_CORNERS_MAX)
+        return;
+    polygon->vertex[polygon->count] = vertex;
+    polygon->corners[polygon->count++] = corner;
+}
 
 /* Not negative inside. Order as the pipeline's clipper: right, left, top, bottom, near, far. */
 static double plane_distance(int plane, const Corner *corner, int width, int height)
@@ -48,21 +59,20 @@ static Corner crossing(const Corner *inner, const Corner *outer, double d_inner,
 static void clip_by(int plane, int width, int height, Polygon *polygon)
 {
     Polygon in = *polygon;
-    int count = 0;
+    polygon->count = 0;
     for (int i = 0; i < in.count; i++) {
         const Corner *previous = &in.corners[(i + in.count - 1) % in.count];
         const Corner *current = &in.corners[i];
         double d_previous = plane_distance(plane, previous, width, height);
         double d_current = plane_distance(plane, current, width, height);
         bool was_inside = d_previous >= 0.0, is_inside = d_current >= 0.0;
-        if (was_inside && !is_inside && count < COVERAGE_CORNERS_MAX)
-            polygon->corners[count++] = crossing(previous, current, d_previous, d_current);
-        if (!was_inside && is_inside && count < COVERAGE_CORNERS_MAX)
-            polygon->corners[count++] = crossing(current, previous, d_current, d_previous);
-        if (is_inside && count < COVERAGE_CORNERS_MAX)
-            polygon->corners[count++] = *current;
+        if (was_inside && !is_inside)
+            push(polygon, crossing(previous, current, d_previous, d_current), NEW);
+        if (!was_inside && is_inside)
+            push(polygon, crossing(current, previous, d_current, d_previous), NEW);
+        if (is_inside)
+            push(polygon, *current, in.vertex[i]);
     }
-    polygon->count = count;
 }
 
 /* Fills polygon with what is inside the view volume; *whole when that is all. False: nothing. */
@@ -70,7 +80,7 @@ static bool clip(const Corner *const corners[3], int width, int height, Polygon 
                  bool *whole)
 {
     unsigned any = 0, all = ~0u;
-    polygon->count = 3;
+    polygon->count = 0;
     for (int i = 0; i < 3; i++) {
         const Corner *corner = corners[i];
         unsigned outside = 0;
@@ -82,7 +92,7 @@ static bool clip(const Corner *const corners[3], int width, int height, Polygon 
         }
         any |= outside;
         all &= outside;
-        polygon->corners[i] = *corner;
+        push(polygon, *corner, i);
     }
     *whole = any == 0;
     if (all != 0)
@@ -99,10 +109,9 @@ static double round_even(double x)
     return (x + 0x1.8p52) - 0x1.8p52;
 }
 
-/* A window coordinate to subpixels, 0 at the first pixel's centre. size: the viewport's. */
-static int64_t snap(double window, int size)
+/* A coordinate in subpixels to an integer one in the viewport, whose side is size pixels. */
+static int64_t snap(double subpixel, int size)
 {
-    double subpixel = (window - 0.5) * SUBPIXELS;
     double low = -SUBPIXELS / 2, high = (double)size * SUBPIXELS - SUBPIXELS / 2;
     subpixel = subpixel > low ? subpixel : low;
     subpixel = subpixel < high ? subpixel : high;
@@ -149,7 +158,21 @@ static void pixel_range(int64_t low, int64_t high, int size, int *first, int *la
     *last = (int)min64(to, size - 1);
 }
 
+static void snap_corner(const Corner *corner, const Snap *known, int width, int height, int64_t *x,
+                        int64_t *y)
+{
+    *x = snap(known ? known->x : (corner->x / corner->w - 0.5) * SUBPIXELS, width);
+    *y = snap(known ? known->y : (corner->y / corner->w - 0.5) * SUBPIXELS, height);
+}
+
 bool coverage_setup(const Corner *const corners[3], int width, int height, Coverage *out)
+{
+    static const Snap unknown[3];
+    return coverage_setup_snapped(corners, unknown, width, height, out);
+}
+
+bool coverage_setup_snapped(const Corner *const corners[3], const Snap snaps[3], int width,
+                            int height, Coverage *out)
 {
     Polygon polygon;
     if (!clip(corners, width, height, &polygon, &out->whole))
@@ -160,8 +183,9 @@ bool coverage_setup(const Corner *const corners[3], int width, int height, Cover
         const Corner *corner = &polygon.corners[i];
         if (!(corner->w > 0.0)) /* the eye itself, under an unusual projection */
             return false;
-        x[i] = snap(corner->x / corner->w, width);
-        y[i] = snap(corner->y / corner->w, height);
+        int vertex = polygon.vertex[i];
+        const Snap *known = vertex != NEW && snaps[vertex].known ? &snaps[vertex] : NULL;
+        snap_corner(corner, known, width, height, &x[i], &y[i]);
         x_min = min64(x_min, x[i]);
         x_max = max64(x_max, x[i]);
         y_min = min64(y_min, y[i]);

@@ -17,6 +17,13 @@ enum {
     COVERAGE_PIECES_MAX = COVERAGE_CORNERS_MAX - 2
 };
 
+/* A corner's window coordinates in 1/256 pixel, 0 at the first pixel's centre, rounded to nearest,
+ * ties to even. */
+typedef struct Snap {
+    int32_t x, y;
+    bool known; /* else coverage_setup rounds the corner's doubles */
+} Snap;
+
 /* A triangle of snapped vertices: edge i is a[i]·x + b[i]·y + c[i] at pixel (x, y), positive
  * inside. */
 typedef struct CoveragePiece {
@@ -43,7 +50,12 @@ typedef enum CoverageAt {
 } CoverageAt;
 
 /* Clips, snaps and sets up a triangle for a viewport of width × height pixels (each at most
- * 16384). False when it covers nothing, snapped or not, or has a non-finite corner. */
+ * 16384). snaps: of the three corners; for those that clipping leaves. Where an edge crosses the
+ * view volume's border the new corner is computed and snapped in double: there GL's contract fixes
+ * no rounding. False when it covers nothing, snapped or not, or has a non-finite corner. */
+bool coverage_setup_snapped(const Corner *const corners[3], const Snap snaps[3], int width,
+                            int height, Coverage *out);
+/* The same without snaps. */
 bool coverage_setup(const Corner *const corners[3], int width, int height, Coverage *out);
 
 /* (x, y): a pixel within the bounds of coverage, y up. *clockwise: of the piece that covers it;

@@ -1,8 +1,10 @@
 #include "ref/truth/soup.h"
 
 #include "base/memory.h"
-#include "ref/truth/coverage.h"
+#include "ref/truth/snap.h"
 
+#include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum {
@@ -17,6 +19,7 @@ typedef struct TileRange {
 typedef struct Build {
     Soup *soup;
     TileRange *ranges; /* one per triangle */
+    _Atomic uint64_t exact_snaps;
 } Build;
 
 Result soup_check_memory(size_t needed, size_t limit)
@@ -93,6 +96,13 @@ void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3]
         out[i] = &soup->vertices[draw->first_vertex + index[i]];
 }
 
+bool soup_coverage(const Soup *soup, const SoupVertex *const vertices[3], Coverage *out)
+{
+    const Corner *corners[3] = {&vertices[0]->corner, &vertices[1]->corner, &vertices[2]->corner};
+    const Snap snaps[3] = {vertices[0]->snap, vertices[1]->snap, vertices[2]->snap};
+    return coverage_setup_snapped(corners, snaps, soup->view->width, soup->view->height, out);
+}
+
 void soup_material(const Soup *soup, uint32_t triangle, const double weight[3], MaterialSample *out)
 {
     const SoupDraw *draw = soup_draw(soup, triangle);
@@ -112,39 +122,79 @@ void soup_material(const Soup *soup, uint32_t triangle, const double weight[3], 
 
 /* ---- vertices ------------------------------------------------------------------------------- */
 
+/* Clip coordinates of a point in view space. Each operation errs by at most EXACT_ROUNDING times
+ * its result, and products of floats are exact; no product comes near the least normal number,
+ * being a multiple of 2^-447. */
+static void project(const View *view, const double position[3], const double position_error[3],
+                    double clip[4], double error[4])
+{
+    for (int row = 0; row < 4; row++) {
+        double rounded = 0.0;
+        clip[row] = view->projection[12 + row];
+        error[row] = 0.0;
+        for (int column = 0; column < 3; column++) {
+            double factor = view->projection[4 * column + row];
+            double product = factor * position[column];
+            clip[row] += product;
+            rounded += fabs(product) + fabs(clip[row]);
+            error[row] += fabs(factor) * position_error[column];
+        }
+        error[row] += EXACT_ROUNDING * rounded;
+    }
+    /* The other clip spaces are brought to −w … w, near to far. */
+    if (view->depth_range == DEPTH_RANGE_GL)
+        return;
+    double sign = view->depth_range == DEPTH_RANGE_REVERSED ? -1.0 : 1.0;
+    clip[2] = sign * (2.0 * clip[2] - clip[3]);
+    error[2] = 2.0 * error[2] + error[3] + EXACT_ROUNDING * fabs(clip[2]);
+}
+
+/* A sum of two clip coordinates, times half of the viewport's size. */
+static double to_window(double a, double b, double a_error, double b_error, int size, double *error)
+{
+    double half = 0.5 * size, sum = a + b, window = sum * half;
+    *error =
+        (a_error + b_error + EXACT_ROUNDING * fabs(sum)) * half + EXACT_ROUNDING * fabs(window);
+    return window;
+}
+
 static SoupVertex transform(const View *view, const Draw *draw, const float *position,
-                            const float *normal)
+                            const float *normal, bool *exact_snap)
 {
     SoupVertex vertex;
+    double view_error[3], clip[4], error[4];
     for (int row = 0; row < 3; row++) {
-        double p = draw->model_view[12 + row], n = 0.0;
+        double p = draw->model_view[12 + row], n = 0.0, rounded = 0.0;
         for (int column = 0; column < 3; column++) {
             p += (double)draw->model_view[4 * column + row] * position[column];
+            rounded += fabs(p);
             n += (double)draw->normal_matrix[3 * column + row] * normal[column];
         }
         vertex.position[row] = p;
         vertex.normal[row] = n;
+        view_error[row] = EXACT_ROUNDING * rounded;
     }
-    double clip[4];
-    for (int row = 0; row < 4; row++) {
-        clip[row] = view->projection[12 + row];
-        for (int column = 0; column < 3; column++)
-            clip[row] += view->projection[4 * column + row] * vertex.position[column];
-    }
-    /* The other clip spaces are brought to −w … w, near to far; exact but for the last bits. */
-    if (view->depth_range == DEPTH_RANGE_ZERO_ONE)
-        clip[2] = 2.0 * clip[2] - clip[3];
-    else if (view->depth_range == DEPTH_RANGE_REVERSED)
-        clip[2] = clip[3] - 2.0 * clip[2];
-    vertex.corner = (Corner){(clip[0] + clip[3]) * (0.5 * view->width),
-                             (clip[1] + clip[3]) * (0.5 * view->height), clip[2], clip[3]};
+    project(view, vertex.position, view_error, clip, error);
+    Corner *corner = &vertex.corner, *bound = &vertex.error;
+    corner->x = to_window(clip[0], clip[3], error[0], error[3], view->width, &bound->x);
+    corner->y = to_window(clip[1], clip[3], error[1], error[3], view->height, &bound->y);
+    corner->z = clip[2];
+    corner->w = clip[3];
+    bound->x *= EXACT_SLACK;
+    bound->y *= EXACT_SLACK;
+    bound->z = error[2] * EXACT_SLACK;
+    bound->w = error[3] * EXACT_SLACK;
+    vertex.snap = snap_vertex(view, draw, position, corner, bound, exact_snap);
     return vertex;
 }
 
 static Result vertex_task(void *context, uint32_t index, int worker)
 {
     (void)worker;
-    Soup *soup = ((Build *)context)->soup;
+    Build *build = context;
+    Soup *soup = build->soup;
+    bool exact_snap;
+    uint64_t exact_snaps = 0;
     size_t first = (size_t)index * CHUNK;
     size_t end = first + CHUNK < soup->vertex_count ? first + CHUNK : soup->vertex_count;
     const SoupDraw *draw = find_draw(soup, first, true);
@@ -153,8 +203,10 @@ static Result vertex_task(void *context, uint32_t index, int worker)
             draw++;
         size_t local = 3 * (i - draw->first_vertex);
         soup->vertices[i] = transform(soup->view, draw->draw, &draw->mesh->position[local],
-                                      &draw->mesh->normal[local]);
+                                      &draw->mesh->normal[local], &exact_snap);
+        exact_snaps += exact_snap;
     }
+    atomic_fetch_add(&build->exact_snaps, exact_snaps);
     return RESULT_OK;
 }
 
@@ -164,10 +216,9 @@ static TileRange tile_range(const Soup *soup, uint32_t triangle)
 {
     const SoupVertex *vertices[3];
     soup_vertices(soup, triangle, vertices);
-    const Corner *corners[3] = {&vertices[0]->corner, &vertices[1]->corner, &vertices[2]->corner};
-    int width = soup->view->width, height = soup->view->height;
+    int height = soup->view->height;
     Coverage coverage;
-    if (!coverage_setup(corners, width, height, &coverage))
+    if (!soup_coverage(soup, vertices, &coverage))
         return (TileRange){1, 0, 1, 0};
     return (TileRange){(uint16_t)(coverage.x_low / TRACE_TILE),
                        (uint16_t)(coverage.x_high / TRACE_TILE),
@@ -237,11 +288,12 @@ Result soup_build(const Scene *scene, const View *view, Pool *pool, size_t max_b
     size_t tiles = (size_t)out->tile_columns * (size_t)out->tile_rows;
     out->vertices = memory_array(out->vertex_count, sizeof *out->vertices);
     out->tile_first = memory_array(tiles + 1, sizeof *out->tile_first);
-    Build build = {out, memory_array(out->triangle_count, sizeof(TileRange))};
+    Build build = {.soup = out, .ranges = memory_array(out->triangle_count, sizeof(TileRange))};
     if (!out->vertices || !out->tile_first || !build.ranges)
         result = RESULT_NO_MEMORY;
     if (result == RESULT_OK)
         result = pool_run(pool, chunks(out->vertex_count), vertex_task, &build);
+    out->exact_snaps = build.exact_snaps;
     if (result == RESULT_OK)
         result = pool_run(pool, chunks(out->triangle_count), range_task, &build);
     if (result == RESULT_OK)

@@ -1,19 +1,21 @@
 /* The scene as one list of triangles in window space, binned to screen tiles.
  *
  * Corners are computed in double from the mesh's floats and the view's float matrices, taken as
- * exact numbers. Triangles are numbered from 0 through all draws in order; that order is the order
- * of primitive ids. */
+ * exact numbers, and carry a bound of their rounding (plane.h has them without). Triangles are
+ * numbered from 0 through all draws in order; that order is the order of primitive ids. */
 #ifndef PEEL_REF_TRUTH_SOUP_H
 #define PEEL_REF_TRUTH_SOUP_H
 
 #include "base/pool.h"
 #include "frame/trace.h"
 #include "frame/view.h"
-#include "ref/truth/exact.h"
+#include "ref/truth/coverage.h"
 #include "ref/truth/texture.h"
 
 typedef struct SoupVertex {
     Corner corner;
+    Corner error; /* proven: each number of corner errs by at most this */
+    Snap snap;
     double position[3]; /* view space */
     double normal[3];   /* view space, not normalised */
 } SoupVertex;
@@ -37,6 +39,7 @@ typedef struct Soup {
     int tile_columns, tile_rows; /* tiles of TRACE_TILE pixels, row 0 at the top */
     uint64_t *tile_first;        /* tile count + 1: where each tile's list starts */
     uint32_t *tile_triangles;    /* ascending within a tile */
+    uint64_t exact_snaps;        /* vertices snapped in exact arithmetic */
     size_t bytes;                /* of all the arrays */
 } Soup;
 
@@ -48,6 +51,8 @@ void soup_free(Soup *soup);
 /* triangle < triangle_count. */
 const SoupDraw *soup_draw(const Soup *soup, uint32_t triangle);
 void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3]);
+/* coverage_setup_snapped for its triangle's vertices. */
+bool soup_coverage(const Soup *soup, const SoupVertex *const vertices[3], Coverage *out);
 uint32_t soup_primitive(const Soup *soup, uint32_t triangle); /* the frame's primitive id */
 /* The triangle's material where its corners have these weights (exact.h), textures included. */
 void soup_material(const Soup *soup, uint32_t triangle, const double weight[3],

@@ -83,7 +83,7 @@ typedef struct SummaryLayer {
 } SummaryLayer;
 
 enum {
-    SUMMARY_LAYERS = 11
+    SUMMARY_LAYERS = 14
 };
 void summary_layers(const Threeway *report, SummaryLayer out[SUMMARY_LAYERS]);
 
