@@ -23,7 +23,7 @@ typedef struct Incoming {
     uint32_t index;
 } Incoming;
 
-/* A buffer that grows. */
+/* A buffer that grows; never NULL once it has. */
 typedef struct Bytes {
     uint8_t *data;
     size_t capacity;
@@ -46,7 +46,7 @@ typedef struct DeepReader {
 static Result grow(Bytes *bytes, size_t size)
 {
     void *data = bytes->data;
-    Result result = memory_grow(&data, &bytes->capacity, size, 1);
+    Result result = memory_grow(&data, &bytes->capacity, size ? size : 1, 1);
     bytes->data = data;
     return result;
 }

@@ -236,8 +236,10 @@ START_TEST(test_scenes)
         check_scene(&scene, &(RenderDesc){.width = 1, .height = 1, .lights = -1});
         scene_override_opacity(&scene, 1); /* nothing transparent */
         check_scene(&scene, &(RenderDesc){.width = 33, .height = 17, .lights = 1});
+        size_t instances = scene.instance_count;
         scene.instance_count = 0;
         check_scene(&scene, &(RenderDesc){.width = 17, .height = 33, .threads = 1});
+        scene.instance_count = instances;
         scene_free(&scene);
     }
 }
