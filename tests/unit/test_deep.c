@@ -97,11 +97,12 @@ START_TEST(test_alpha_extremes)
     add_quad(stage, 1.5f, 4, (const float[]){0, 1, 0, 1})->alpha_mode = ALPHA_BLEND;
     add_quad(stage, 2, 4, red); /* hidden by the one before, but a fragment */
     add_quad(stage, 2, 4, red); /* a tie */
+    stage->instances[3].material = 2;
     const DeepSample samples[] = {
         {{0, 0, 0, 0}, 1.25f, window(1.25), 0, 0},
         {{0, 1, 0, 1}, 1.5f, window(1.5), 2, 1},
         {{0.5f, 0, 0, 0.5f}, 2, window(2), 4, 2},
-        {{0.5f, 0, 0, 0.5f}, 2, window(2), 6, 3},
+        {{0.5f, 0, 0, 0.5f}, 2, window(2), 6, 2},
     };
     check_pixels(stage, &small, samples, 4);
     Frame frame;
@@ -120,6 +121,39 @@ START_TEST(test_alpha_extremes)
     const DeepSample *sample = deep_pixel(&deep, 4, 4, &count);
     ck_assert_uint_eq(count, 4);
     ck_assert_float_bits(sample[1].rgba[1], FLT_MAX);
+    deep_free(&deep);
+    frame_free(&frame);
+    free(stage);
+}
+END_TEST
+
+/* Two planes that leave the view volume through the near plane a thousandth of a pixel right of the
+ * centres of column 4, which snapping moves to the centres: there both have depth 0, and the one
+ * that comes first is farther from the eye. */
+START_TEST(test_clamped_depth)
+{
+    Stage *stage = stage_new();
+    const float cut = 0.125f + 1.0f / 4096;
+    for (int i = 0; i < 2; i++) {
+        add_quad(stage, 1, 4, red);
+        for (int k = 0; k < 4; k++) {
+            float *position = &stage->positions[i][3 * k];
+            position[2] = -(1 + (float)(i + 1) * (position[0] - cut));
+        }
+    }
+    Frame frame;
+    DeepImage deep = render(&stage->scene, &small, &frame);
+    for (int y = 0; y < 8; y++) {
+        uint32_t count;
+        const DeepSample *samples = deep_pixel(&deep, 4, y, &count);
+        ck_assert_uint_eq(count, 2);
+        ck_assert_uint_lt(samples[0].primitive, 2);
+        for (int i = 0; i < 2; i++) {
+            ck_assert_float_bits(samples[i].depth, 0);
+            ck_assert_float_eq_tol(samples[i].z, 0.99976f, 1e-5f);
+        }
+        ck_assert_float_bits(samples[1].z, samples[0].z);
+    }
     deep_free(&deep);
     frame_free(&frame);
     free(stage);
@@ -320,6 +354,7 @@ int main(void)
     tcase_add_checked_fixture(tests, scratch_make, scratch_remove);
     tcase_add_test(tests, test_by_hand);
     tcase_add_test(tests, test_alpha_extremes);
+    tcase_add_test(tests, test_clamped_depth);
     tcase_add_test(tests, test_camera);
     tcase_add_test(tests, test_scenes);
     tcase_add_test(tests, test_threads);

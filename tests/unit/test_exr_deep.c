@@ -127,8 +127,8 @@ END_TEST
 
 /* ---- files of others ------------------------------------------------------------------------ */
 
-/* One row of pixels, uncompressed, with any channels; values: channel by channel, samples in
- * order, as 4 bytes (2 for half). */
+/* One row of pixels with any channels, not compressed or (only the values) by run lengths; values:
+ * channel by channel, samples in order, as 4 bytes (2 for half). */
 typedef struct Foreign {
     const char *names[8]; /* in order of names; NULL ends them */
     exr_pixel_type_t types[8];
@@ -136,24 +136,58 @@ typedef struct Foreign {
     uint32_t totals[4]; /* running, one per pixel */
     const void *values;
     size_t bytes;
+    bool runs;
 } Foreign;
+
+/* As the file format has it: even bytes, then odd ones, as differences, then runs of at least 3 and
+ * what lies between them. Returns the bytes of out. */
+static size_t pack_runs(const uint8_t *in, size_t size, uint8_t *out)
+{
+    uint8_t mixed[256];
+    size_t packed = 0, literal = 0;
+    for (size_t i = 0; i < size; i++)
+        mixed[i % 2 ? (size + 1) / 2 + i / 2 : i / 2] = in[i];
+    for (size_t i = size - 1; i > 0; i--)
+        mixed[i] = (uint8_t)(mixed[i] - mixed[i - 1] + 128);
+    for (size_t at = 0; at < size;) {
+        size_t run = 1;
+        while (at + run < size && run < 128 && mixed[at + run] == mixed[at])
+            run++;
+        if (run >= 3) {
+            out[packed++] = (uint8_t)(run - 1);
+            out[packed++] = mixed[at];
+            literal = 0;
+            at += run;
+        } else {
+            if (literal == 0)
+                literal = ++packed;
+            out[literal - 1] = (uint8_t) - (int)(packed - literal + 1);
+            out[packed++] = mixed[at++];
+        }
+    }
+    return packed;
+}
 
 static void write_foreign(const Foreign *foreign, const char *path)
 {
     exr_context_t context;
     int index, failed = 0;
+    uint8_t packed[512];
+    const void *data = foreign->runs ? packed : foreign->values;
+    size_t bytes =
+        foreign->runs ? pack_runs(foreign->values, foreign->bytes, packed) : foreign->bytes;
     exr_attr_box2i_t window = {{.x = 5, .y = -3}, {.x = 4 + foreign->width, .y = -3}};
     failed |= exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, NULL);
     failed |= exr_add_part(context, "beauty", EXR_STORAGE_DEEP_SCANLINE, &index);
-    failed |= exr_initialize_required_attr_simple(context, 0, 20, 10, EXR_COMPRESSION_NONE);
+    failed |= exr_initialize_required_attr_simple(
+        context, 0, 20, 10, foreign->runs ? EXR_COMPRESSION_RLE : EXR_COMPRESSION_NONE);
     failed |= exr_set_data_window(context, 0, &window);
     for (int i = 0; foreign->names[i]; i++)
         failed |= exr_add_channel(context, 0, foreign->names[i], foreign->types[i],
                                   EXR_PERCEPTUALLY_LINEAR, 1, 1);
     failed |= exr_write_header(context);
-    failed |= exr_write_deep_scanline_chunk(context, 0, -3, foreign->values, foreign->bytes,
-                                            foreign->bytes, foreign->totals,
-                                            4 * (uint64_t)foreign->width);
+    failed |= exr_write_deep_scanline_chunk(context, 0, -3, data, bytes, foreign->bytes,
+                                            foreign->totals, 4 * (uint64_t)foreign->width);
     failed |= exr_finish(&context);
     ck_assert_int_eq(failed, 0);
 }
@@ -189,6 +223,27 @@ START_TEST(test_unsorted)
     }
     ck_assert_ptr_null(image.pixels[1]);
     ck_assert_float_bits(image.pixels[2][0].rgba[3], 5);
+    deep_free(&image);
+}
+END_TEST
+
+START_TEST(test_run_lengths)
+{
+    /* Eight samples: runs of zeros, and values between them. */
+    float values[40] = {0.5f, 0.25f};
+    for (int i = 0; i < 8; i++)
+        values[32 + i] = i < 4 ? 1 : 1.0f + (float)i / 7;
+    Foreign foreign = {RGBAZ, FLOATS, 1, {8}, values, sizeof values, true};
+    const char *path = scratch_path("a.exr");
+    write_foreign(&foreign, path);
+    DeepImage image;
+    ck_assert_msg(exr_deep_read(path, MEMORY, &image) == RESULT_OK, "%s", result_message());
+    ck_assert_uint_eq(image.counts[0], 8);
+    for (int i = 0; i < 8; i++) {
+        ck_assert_float_bits(image.pixels[0][i].rgba[3], values[i]);
+        ck_assert_float_bits(image.pixels[0][i].rgba[0], 0);
+        ck_assert_float_bits(image.pixels[0][i].z, values[32 + i]);
+    }
     deep_free(&image);
 }
 END_TEST
@@ -268,7 +323,7 @@ START_TEST(test_foreign_refused)
 }
 END_TEST
 
-/* What oiiotool makes of flat images: another writer, all compressions that deep files have. */
+/* What oiiotool makes of flat images: another writer. */
 START_TEST(test_oiiotool_files)
 {
     static const char *const compressions[] = {"none", "rle", "zips"};
@@ -328,7 +383,8 @@ START_TEST(test_truncated)
 END_TEST
 
 /* Flipped bits, bytes of extreme numbers and moved pieces must never do more than fail. The second
- * file is not compressed, so that they reach tables and samples. PEEL_TEST_COUNT: cases. */
+ * file is not compressed, so that they reach tables and samples; the third has run lengths.
+ * PEEL_TEST_COUNT: cases. */
 START_TEST(test_mutations)
 {
     const char *path = scratch_path("a.exr"), *bad = scratch_path("bad.exr");
@@ -344,7 +400,7 @@ START_TEST(test_mutations)
         ck_assert_int_eq(exr_deep_write(&image, path), RESULT_OK);
         deep_free(&image);
     } else {
-        Foreign foreign = {RGBAZ, FLOATS, 4, {1, 4, 4, 8}, values, sizeof values};
+        Foreign foreign = {RGBAZ, FLOATS, 4, {1, 4, 4, 8}, values, sizeof values, _i == 2};
         write_foreign(&foreign, path);
     }
     size_t size = scratch_read(path, bytes, sizeof bytes);
@@ -409,11 +465,12 @@ int main(void)
     tcase_add_test(tests, test_round_trip);
     tcase_add_test(tests, test_other_reader);
     tcase_add_test(tests, test_unsorted);
+    tcase_add_test(tests, test_run_lengths);
     tcase_add_test(tests, test_half_and_more_channels);
     tcase_add_test(tests, test_foreign_refused);
     tcase_add_test(tests, test_oiiotool_files);
     tcase_add_test(tests, test_truncated);
-    tcase_add_loop_test(tests, test_mutations, 0, 2);
+    tcase_add_loop_test(tests, test_mutations, 0, 3);
     tcase_add_test(tests, test_writer_failures);
     suite_add_tcase(suite, tests);
     return testing_run(suite);
