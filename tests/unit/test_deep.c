@@ -150,7 +150,7 @@ START_TEST(test_clamped_depth)
         ck_assert_uint_lt(samples[0].primitive, 2);
         for (int i = 0; i < 2; i++) {
             ck_assert_float_bits(samples[i].depth, 0);
-            ck_assert_float_eq_tol(samples[i].z, 0.99976f, 1e-5f);
+            ck_assert_float_eq_tol(samples[i].z, 0.999721f, 1e-5f);
         }
         ck_assert_float_bits(samples[1].z, samples[0].z);
     }
