@@ -32,7 +32,8 @@ typedef struct DeepImage {
     uint64_t sample_count;
     size_t bytes, max_bytes; /* allocated, and allowed */
     bool has_camera;
-    /* Column-major, for column vectors; camera: looks down −z, y up; NDC: −1 to 1. */
+    /* Column-major, for column vectors. Camera: looks down −z, y up. NDC: x and y from −1 to 1, z
+     * as the depth range has it. */
     float world_to_camera[16], world_to_ndc[16];
     DeepBlock *blocks; /* private */
 } DeepImage;
