@@ -26,9 +26,8 @@ typedef struct DeepBlock DeepBlock;
 
 typedef struct DeepImage {
     int width, height;
-    uint32_t *counts; /* samples of each pixel, rows from top to bottom; owned */
-    DeepSample *
-        *pixels; /* the first of them; NULL where there is none. Owned, as the samples are */
+    uint32_t *counts;    /* samples of each pixel, rows from top to bottom; owned */
+    DeepSample **pixels; /* the first of them, NULL where there is none; owned as they are */
     uint64_t sample_count;
     size_t bytes, max_bytes; /* allocated, and allowed */
     bool has_camera;
