@@ -6,9 +6,12 @@
 #include "ref/truth/fragments.h"
 #include "ref/truth/radiance.h"
 
+#include <float.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* One worker's scratch and counts; counts are sums and maxima, so they do not depend on which
  * worker took which tile. */
@@ -25,7 +28,8 @@ typedef struct Render {
     Soup soup;
     WorkerState **workers;
     TraceSink *trace;
-    pthread_mutex_t trace_mutex;
+    DeepImage *deep;       /* NULL: not asked for */
+    pthread_mutex_t mutex; /* of trace and deep */
     Frame *frame;
 } Render;
 
@@ -53,48 +57,105 @@ static Surface find_surface(const Render *render, const Fragment *fragment, int 
     return surface;
 }
 
-/* Puts the fragment behind rgba: premultiplied colour so far, and transmittance. */
-static void blend_fragment(const Render *render, const Fragment *fragment, int x, int y,
-                           double rgba[4])
+/* What a fragment sends to the eye, not multiplied by alpha, and where it is. */
+typedef struct Lit {
+    double rgb[3], alpha;
+    double z; /* distance along the view axis */
+} Lit;
+
+/* (x, y): y up. All 0 but z where the alpha test discards the fragment. */
+static void light_fragment(const Render *render, const Fragment *fragment, int x, int y, Lit *out)
 {
     bool transparent = soup_draw(&render->soup, fragment->triangle)->draw->transparent;
     Surface surface = find_surface(render, fragment, x, y);
     surface.back_light = render->desc->back_light && transparent;
     surface.phong = render->desc->shading == SHADING_PHONG;
     double alpha = transparent ? surface.material.base_color[3] : 1.0;
+    *out = (Lit){.z = -surface.position[2]};
     if (alpha <= (double)SHADING_ALPHA_TEST)
         return;
-    double rgb[3];
-    radiance_shade(render->view, &surface, rgb);
-    for (int i = 0; i < 3; i++)
-        rgba[i] += rgba[3] * alpha * rgb[i];
-    rgba[3] *= 1.0 - alpha;
+    out->alpha = alpha;
+    radiance_shade(render->view, &surface, out->rgb);
 }
 
-/* What one pixel shows: linear RGB over the background, and coverage. (x, y): y up. */
-static void composite(const Render *render, const TileFragments *tile, int pixel, int x, int y,
-                      double rgba[4])
+/* Puts the fragment behind rgba: premultiplied colour so far, and transmittance. */
+static void blend_fragment(const Lit *lit, double rgba[4])
 {
+    for (int i = 0; i < 3; i++)
+        rgba[i] += rgba[3] * lit->alpha * lit->rgb[i];
+    rgba[3] *= 1.0 - lit->alpha;
+}
+
+static void fill_sample(const Soup *soup, const Fragment *fragment, const Lit *lit,
+                        const DeepSample *previous, DeepSample *out)
+{
+    for (int i = 0; i < 3; i++)
+        out->rgba[i] = (float)fmin(lit->alpha * lit->rgb[i], FLT_MAX);
+    out->rgba[3] = (float)lit->alpha;
+    out->z = (float)fmin(lit->z, FLT_MAX);
+    if (previous && previous->z > out->z)
+        out->z = previous->z;
+    out->depth = (float)fragment->depth;
+    out->primitive = soup_primitive(soup, fragment->triangle);
+    out->material = soup_draw(soup, fragment->triangle)->draw->material;
+}
+
+/* What one pixel shows: linear RGB over the background, and coverage. (x, y): y up. Unless samples
+ * is NULL it receives every fragment; their number is returned. */
+static uint32_t composite(const Render *render, const TileFragments *tile, int pixel, int x, int y,
+                          double rgba[4], DeepSample *samples)
+{
+    const Fragment *opaque = &tile->opaque[pixel];
+    uint32_t transparent = tile->first[pixel + 1] - tile->first[pixel];
+    uint32_t count = transparent + (opaque->triangle != FRAGMENT_NO_TRIANGLE);
     rgba[0] = rgba[1] = rgba[2] = 0.0;
     rgba[3] = 1.0;
-    for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1] && rgba[3] > 0.0; i++)
-        blend_fragment(render, &tile->sorted[i], x, y, rgba);
-    const Fragment *opaque = &tile->opaque[pixel];
-    if (opaque->triangle != FRAGMENT_NO_TRIANGLE && rgba[3] > 0.0)
-        blend_fragment(render, opaque, x, y, rgba);
+    for (uint32_t i = 0; i < count && (samples || rgba[3] > 0.0); i++) {
+        const Fragment *fragment = i < transparent ? &tile->sorted[tile->first[pixel] + i] : opaque;
+        Lit lit;
+        light_fragment(render, fragment, x, y, &lit);
+        if (samples)
+            fill_sample(&render->soup, fragment, &lit, i ? &samples[i - 1] : NULL, &samples[i]);
+        if (rgba[3] > 0.0)
+            blend_fragment(&lit, rgba);
+    }
     for (int i = 0; i < 3; i++)
         rgba[i] += rgba[3] * render->view->background[i];
     rgba[3] = 1.0 - rgba[3];
+    return count;
 }
 
-static void draw_tile(const Render *render, const TileFragments *tile)
+/* Room for the tile's samples; NULL when none are asked for. */
+static Result reserve_samples(Render *render, const TileFragments *tile, DeepSample **out)
 {
+    *out = NULL;
+    if (!render->deep)
+        return RESULT_OK;
+    size_t count = tile->count;
+    for (int pixel = 0; pixel < FRAGMENTS_TILE_PIXELS; pixel++)
+        count += tile->opaque[pixel].triangle != FRAGMENT_NO_TRIANGLE;
+    pthread_mutex_lock(&render->mutex);
+    Result result = deep_block(render->deep, count, out);
+    pthread_mutex_unlock(&render->mutex);
+    return result;
+}
+
+static Result draw_tile(Render *render, const TileFragments *tile)
+{
+    DeepSample *samples;
+    Result result = reserve_samples(render, tile, &samples);
+    if (result != RESULT_OK)
+        return result;
     for (int row = 0; row < tile->height; row++) {
         for (int column = 0; column < tile->width; column++) {
             int x = tile->x + column, image_y = tile->y + row;
             double rgba[4];
-            composite(render, tile, row * TRACE_TILE + column, x,
-                      render->view->height - 1 - image_y, rgba);
+            uint32_t count = composite(render, tile, row * TRACE_TILE + column, x,
+                                       render->view->height - 1 - image_y, rgba, samples);
+            if (samples) {
+                deep_set(render->deep, x, image_y, samples, count);
+                samples += count;
+            }
             float *final = image_pixel(&render->frame->final, x, image_y);
             uint8_t *display = image_pixel(&render->frame->display, x, image_y);
             for (int i = 0; i < 4; i++)
@@ -104,6 +165,7 @@ static void draw_tile(const Render *render, const TileFragments *tile)
             display[3] = 255;
         }
     }
+    return RESULT_OK;
 }
 
 /* ---- trace ---------------------------------------------------------------------------------- */
@@ -122,9 +184,9 @@ static Result put_layer(Render *render, const TileFragments *tile, const char *n
                           .height = tile->height,
                           .pixels = pixels,
                           .row_bytes = TRACE_TILE * sizeof *pixels};
-    pthread_mutex_lock(&render->trace_mutex);
+    pthread_mutex_lock(&render->mutex);
     Result result = render->trace->put(render->trace, &buffer);
-    pthread_mutex_unlock(&render->trace_mutex);
+    pthread_mutex_unlock(&render->mutex);
     return result;
 }
 
@@ -161,9 +223,10 @@ static Result tile_task(void *context, uint32_t index, int worker_index)
     WorkerState *worker = render->workers[worker_index];
     TileFragments *tile = &worker->fragments;
     Result result = fragments_collect(&render->soup, render->desc, index, tile);
+    if (result == RESULT_OK)
+        result = draw_tile(render, tile);
     if (result != RESULT_OK)
         return result;
-    draw_tile(render, tile);
     worker->max = tile->deepest > worker->max ? tile->deepest : worker->max;
     worker->fragment_count += tile->count;
     worker->coverage_differs += tile->coverage_differs;
@@ -184,12 +247,38 @@ static void add_counts(const WorkerState *worker, LayerStats *layers)
     layers->undecided += order->undecided;
 }
 
+/* The deep image without samples, allowed three quarters of left bytes, which it is taken from. */
+static Result begin_deep(Render *render, size_t *left)
+{
+    const View *view = render->view;
+    size_t share = *left - *left / 4;
+    *left -= share;
+    Result result = deep_create(view->width, view->height, share, render->deep);
+    if (result != RESULT_OK)
+        return result;
+    DeepImage *deep = render->deep;
+    deep->has_camera = true;
+    memcpy(deep->world_to_camera, view->world_to_camera, sizeof deep->world_to_camera);
+    for (int column = 0; column < 4; column++)
+        for (int row = 0; row < 4; row++) {
+            double sum = 0.0;
+            for (int i = 0; i < 4; i++)
+                sum +=
+                    (double)view->projection[4 * i + row] * view->world_to_camera[4 * column + i];
+            deep->world_to_ndc[4 * column + row] = (float)sum;
+        }
+    return RESULT_OK;
+}
+
 /* Runs the tiles with one scratch per worker, within what is left of limit bytes. */
 static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_t limit)
 {
     size_t threads = (size_t)pool_threads(pool);
     size_t fixed = fixed_bytes + render->soup.bytes + threads * sizeof(WorkerState);
     Result result = soup_check_memory(fixed, limit);
+    size_t left = limit - fixed;
+    if (result == RESULT_OK && render->deep)
+        result = begin_deep(render, &left);
     if (result != RESULT_OK)
         return result;
     render->workers = memory_array(threads, sizeof *render->workers);
@@ -198,7 +287,7 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
     for (size_t i = 0; i < threads && result == RESULT_OK; i++) {
         render->workers[i] = memory_array(1, sizeof **render->workers);
         if (render->workers[i])
-            render->workers[i]->fragments.limit_bytes = (limit - fixed) / threads;
+            render->workers[i]->fragments.limit_bytes = left / threads;
         else
             result = RESULT_NO_MEMORY;
     }
@@ -207,7 +296,7 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
         result = pool_run(pool, tiles, tile_task, render);
     Frame *frame = render->frame;
     frame->layers.exact_coverage = render->soup.exact_snaps;
-    frame->buffer_bytes = fixed;
+    frame->buffer_bytes = fixed + (render->deep ? render->deep->bytes : 0);
     for (size_t i = 0; i < threads && render->workers[i]; i++) {
         WorkerState *worker = render->workers[i];
         add_counts(worker, &frame->layers);
@@ -219,9 +308,12 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
     return result;
 }
 
-static Result render_view(const Scene *scene, const RenderDesc *desc, const View *view,
-                          TraceSink *trace, Frame *frame)
+/* render: with desc, view and what is asked for. */
+static Result render_view(const Scene *scene, Render *render)
 {
+    const RenderDesc *desc = render->desc;
+    const View *view = render->view;
+    Frame *frame = render->frame;
     size_t limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
     size_t pixels = (size_t)view->width * (size_t)view->height;
     size_t image_bytes =
@@ -237,18 +329,18 @@ static Result render_view(const Scene *scene, const RenderDesc *desc, const View
     if (!pool)
         return RESULT_NO_MEMORY;
     frame->threads = pool_threads(pool);
-    Render render = {.desc = desc, .view = view, .trace = trace, .frame = frame};
-    pthread_mutex_init(&render.trace_mutex, NULL);
-    result = soup_build(scene, view, pool, limit - image_bytes, &render.soup);
+    pthread_mutex_init(&render->mutex, NULL);
+    result = soup_build(scene, view, pool, limit - image_bytes, &render->soup);
     if (result == RESULT_OK)
-        result = render_tiles(&render, pool, image_bytes, limit);
-    soup_free(&render.soup);
-    pthread_mutex_destroy(&render.trace_mutex);
+        result = render_tiles(render, pool, image_bytes, limit);
+    soup_free(&render->soup);
+    pthread_mutex_destroy(&render->mutex);
     pool_destroy(pool);
     return result;
 }
 
-Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
+static Result render_frame(const Scene *scene, const RenderDesc *desc, TraceSink *trace,
+                           DeepImage *deep, Frame *out)
 {
     *out = (Frame){0};
     Clock start = clock_now();
@@ -258,7 +350,8 @@ Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace
     Result result = view_build(scene, &in_order, &view);
     if (result != RESULT_OK)
         return result;
-    result = render_view(scene, desc, &view, trace, out);
+    Render render = {.desc = desc, .view = &view, .trace = trace, .deep = deep, .frame = out};
+    result = render_view(scene, &render);
     view_free(&view);
     if (result != RESULT_OK) {
         frame_free(out);
@@ -269,4 +362,18 @@ Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace
     snprintf(out->version, sizeof out->version, "Peel %s", PEEL_VERSION);
     snprintf(out->renderer, sizeof out->renderer, "truth (double precision A-buffer)");
     return RESULT_OK;
+}
+
+Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
+{
+    return render_frame(scene, desc, trace, NULL, out);
+}
+
+Result truth_render_deep(const Scene *scene, const RenderDesc *desc, DeepImage *deep, Frame *out)
+{
+    *deep = (DeepImage){0};
+    Result result = render_frame(scene, desc, NULL, deep, out);
+    if (result != RESULT_OK)
+        deep_free(deep);
+    return result;
 }

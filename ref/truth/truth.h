@@ -19,6 +19,7 @@
 #define PEEL_REF_TRUTH_H
 
 #include "frame/frame.h"
+#include "image/deep.h"
 
 /* See Renderer. The trace receives opaque.primitive and peel.K.primitive by rectangles (steps 0
  * and K + 1), nothing else; a layer that a rectangle does not have is not sent for it. The same
@@ -37,5 +38,15 @@
  * front of them at their pixel, or that are hidden by an opaque fragment at exactly their depth.
  * comparisons and exact_comparisons count what it took; drawing order changes them. */
 Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out);
+
+/* The same frame, and every fragment of it: in each pixel the transparent ones in front of the
+ * nearest opaque one, those behind alpha 1 included, then that one with alpha 1. The background is
+ * no sample. Colours are rounded once from double, beyond single precision to its greatest number;
+ * a fragment that the alpha test discards is there with all 0. z is rounded too, then raised to the
+ * previous sample's where it would be less.
+ *
+ * Memory: what truth_render needs; of what is left of desc->max_memory, three quarters for *deep
+ * and one for the lists of fragments. The caller frees *deep; after a failure it is empty. */
+Result truth_render_deep(const Scene *scene, const RenderDesc *desc, DeepImage *deep, Frame *out);
 
 #endif

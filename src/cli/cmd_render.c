@@ -5,7 +5,9 @@
 #include "cli/options.h"
 #include "compare/store.h"
 #include "image/exr.h"
+#include "image/exr_deep.h"
 #include "image/png.h"
+#include "ref/truth/truth.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,11 +17,13 @@ typedef struct RenderCommand {
     RenderOptions render;
     int renderer;
     const char *output, *trace;
+    bool deep;
 } RenderCommand;
 
 enum {
     KEY_WITH = 0x200,
-    KEY_TRACE
+    KEY_TRACE,
+    KEY_DEEP
 };
 
 static const struct argp_option command_options[] = {
@@ -27,14 +31,9 @@ static const struct argp_option command_options[] = {
     {"output", 'o', "FILE", 0,
      "PNG: display-transformed; EXR: linear R, G, B over the background, A = coverage", 0},
     {"trace", KEY_TRACE, "FILE", 0, "Every buffer of every step as one multi-part EXR", 0},
+    {"deep", KEY_DEEP, 0, 0, "With truth and EXR: every fragment of every pixel, front to back", 0},
     {0},
 };
-
-static bool has_extension(const char *path, const char *extension)
-{
-    size_t length = strlen(path), wanted = strlen(extension);
-    return length > wanted && strcmp(path + length - wanted, extension) == 0;
-}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -47,14 +46,17 @@ static error_t parse(int key, char *argument, struct argp_state *state)
                    : options_error("--with %s: expected ref, gl or truth", argument);
     case 'o':
         command->output = argument;
-        return has_extension(argument, ".png") || has_extension(argument, ".exr")
+        return options_has_extension(argument, ".png") || options_has_extension(argument, ".exr")
                    ? 0
                    : options_error("-o %s: expected a name ending in .png or .exr", argument);
     case KEY_TRACE:
         command->trace = argument;
-        return has_extension(argument, ".exr")
+        return options_has_extension(argument, ".exr")
                    ? 0
                    : options_error("--trace %s: expected a name ending in .exr", argument);
+    case KEY_DEEP:
+        command->deep = true;
+        return 0;
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;
         return 0;
@@ -111,6 +113,21 @@ static Result write_trace(const TraceStore *store, const char *path)
     return result;
 }
 
+static Result check_deep(const RenderCommand *command)
+{
+    if (!command->deep)
+        return RESULT_OK;
+    if (command->renderer != RENDERER_TRUTH)
+        return result_fail(RESULT_BAD_INPUT, "--deep: expected --with truth, not %s",
+                           threeway_renderer_name(command->renderer));
+    if (command->trace)
+        return result_fail(RESULT_BAD_INPUT, "--deep: expected no --trace beside it");
+    if (!options_has_extension(command->output, ".exr"))
+        return result_fail(RESULT_BAD_INPUT, "--deep: -o %s: expected a name ending in .exr",
+                           command->output);
+    return RESULT_OK;
+}
+
 /* What can be known before the work. */
 static Result check(const RenderCommand *command)
 {
@@ -119,7 +136,9 @@ static Result check(const RenderCommand *command)
                            command->trace);
     if (command->render.all_methods)
         return result_fail(RESULT_BAD_INPUT, "--method all: expected one of them here");
-    Result result = options_check_output(command->output);
+    Result result = check_deep(command);
+    if (result == RESULT_OK)
+        result = options_check_output(command->output);
     if (result == RESULT_OK)
         result = options_check_output(command->trace);
     if (result == RESULT_OK && command->renderer == RENDERER_GL)
@@ -138,12 +157,31 @@ static Result render(const RenderCommand *command, const Scene *scene, TraceStor
     if (result != RESULT_OK)
         return result;
     if (command->output)
-        result = has_extension(command->output, ".png") ? png_write(&out->display, command->output)
-                                                        : exr_write(&out->final, command->output);
+        result = options_has_extension(command->output, ".png")
+                     ? png_write(&out->display, command->output)
+                     : exr_write(&out->final, command->output);
     if (result == RESULT_OK && store)
         result = write_trace(store, command->trace);
     if (result != RESULT_OK)
         frame_free(out);
+    return result;
+}
+
+static Result render_deep(const RenderCommand *command, const Scene *scene, Frame *out)
+{
+    DeepImage deep;
+    progress_begin("truth", 0);
+    Result result = truth_render_deep(scene, &command->render.desc, &deep, out);
+    progress_end();
+    if (result != RESULT_OK)
+        return result;
+    result = exr_deep_write(&deep, command->output);
+    if (result == RESULT_OK)
+        printf("deep: %llu samples, %u in one pixel\n", (unsigned long long)deep.sample_count,
+               deep_most(&deep));
+    else
+        frame_free(out);
+    deep_free(&deep);
     return result;
 }
 
@@ -183,7 +221,8 @@ int cmd_render(int argc, char **argv)
     if (result == RESULT_OK && command.trace)
         result = store_create(0, &store);
     if (result == RESULT_OK)
-        result = render(&command, &scene, store, &frame);
+        result = command.deep ? render_deep(&command, &scene, &frame)
+                              : render(&command, &scene, store, &frame);
     if (result == RESULT_OK) {
         print_summary(&command, &frame);
         frame_free(&frame);

@@ -17,9 +17,10 @@ typedef struct Command {
 } Command;
 
 static const Command commands[] = {
-    {"render", "one renderer to PNG or EXR, with --trace every buffer", cmd_render},
+    {"render", "one renderer to PNG, EXR or deep EXR, with --trace every buffer", cmd_render},
     {"compare", "all three renderers; table, JSON, report", cmd_compare},
     {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
+    {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
     {"methods", "list the methods of --method", cmd_methods},
     {"scenes", "list the built-in scenes, or write one as glTF", cmd_scenes},
 };

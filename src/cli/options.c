@@ -97,6 +97,12 @@ bool options_real(const char *text, double low, double high, double *out)
     return true;
 }
 
+bool options_has_extension(const char *path, const char *extension)
+{
+    size_t length = strlen(path), wanted = strlen(extension);
+    return length > wanted && strcmp(path + length - wanted, extension) == 0;
+}
+
 RenderOptions options_default(void)
 {
     return (RenderOptions){

@@ -60,6 +60,10 @@ bool options_real(const char *text, double low, double high, double *out);
 error_t options_gl(const char *text);
 error_t options_fma(const char *text, FmaChoice *out);
 error_t options_count(const char *name, const char *text, int low, int high, int *out);
+error_t options_memory(const char *text, size_t *out);
+
+/* Whether path has a name that ends so: ".png". */
+bool options_has_extension(const char *path, const char *extension);
 
 /* Tells Mesa's software driver not to fuse, for off. Before the first GL context. */
 void options_apply_fma(FmaChoice fma);

@@ -38,7 +38,7 @@ static error_t parse_background(const char *text, RenderOptions *options)
     return 0;
 }
 
-static error_t parse_memory(const char *text, RenderDesc *desc)
+error_t options_memory(const char *text, size_t *out)
 {
     char *end;
     errno = 0;
@@ -47,7 +47,7 @@ static error_t parse_memory(const char *text, RenderDesc *desc)
     if (errno || end == text || *text == '-' || bytes == 0 || end[shift != 0] ||
         bytes > (SIZE_MAX >> shift))
         return options_error("--max-memory %s: expected bytes, or a number with K, M or G", text);
-    desc->max_memory = (size_t)bytes << shift;
+    *out = (size_t)bytes << shift;
     return 0;
 }
 
@@ -365,7 +365,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
     case KEY_THREADS:
         return options_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:
-        return parse_memory(argument, desc);
+        return options_memory(argument, &desc->max_memory);
     case ARGP_KEY_ARG:
         if (options->scene_path)
             return options_error("'%s': expected one scene, already given as '%s'", argument,

@@ -214,6 +214,7 @@ Result view_build(const Scene *scene, const RenderDesc *desc, View *out)
     out->depth_range = desc->depth_range;
     Matrix projection = make_projection(camera, desc);
     matrix_round(&projection, out->projection);
+    matrix_round(&view, out->world_to_camera);
     /* Reversed, the depth of infinity is 0. On a near plane about 2^-126 clipped vertices may
      * round to w = 0. */
     bool fits = (float)camera->near >= NEAR_MIN && isnormal(out->projection[0]) &&

@@ -35,7 +35,8 @@ typedef struct Unprojection {
 
 typedef struct View {
     int width, height;
-    DepthRange depth_range; /* which clip space projection leads to */
+    DepthRange depth_range;    /* which clip space projection leads to */
+    float world_to_camera[16]; /* column-major, as projection; no renderer needs it */
     float projection[16];
     Unprojection unprojection;
     size_t draw_count;

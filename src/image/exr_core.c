@@ -1,7 +1,12 @@
 #include "image/exr_core.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static _Thread_local char message[512];
 
@@ -48,4 +53,136 @@ void exr_message_clear(void)
 const char *exr_message(exr_result_t code)
 {
     return message[0] ? message : exr_get_default_error_message(code);
+}
+
+bool exr_find_channel(const exr_attr_chlist_t *list, const char *name, exr_pixel_type_t *type)
+{
+    for (int i = 0; i < list->num_channels; i++)
+        if (strcmp(list->entries[i].name.str, name) == 0) {
+            *type = list->entries[i].pixel_type;
+            return true;
+        }
+    return false;
+}
+
+/* ---- reading ---- */
+
+Result exr_reader_fail(const ExrReader *reader, exr_result_t code)
+{
+    return result_fail(code == EXR_ERR_OUT_OF_MEMORY ? RESULT_NO_MEMORY : RESULT_BAD_INPUT,
+                       "%s: not a readable OpenEXR file: %s", reader->path, exr_message(code));
+}
+
+static int64_t read_at(exr_const_context_t context, void *user, void *buffer, uint64_t size,
+                       uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    (void)context;
+    (void)error;
+    const ExrReader *reader = user;
+    uint64_t done = 0;
+    while (done < size) {
+        ssize_t got =
+            pread(reader->descriptor, (char *)buffer + done, size - done, (off_t)(offset + done));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return -1;
+        if (got == 0)
+            break;
+        done += (uint64_t)got;
+    }
+    return (int64_t)done;
+}
+
+static int64_t file_size(exr_const_context_t context, void *user)
+{
+    (void)context;
+    return ((const ExrReader *)user)->size;
+}
+
+void exr_reader_close(ExrReader *reader)
+{
+    if (reader->context)
+        exr_finish(&reader->context);
+    if (reader->descriptor >= 0)
+        close(reader->descriptor);
+}
+
+/* On success the caller ends with reader_close. */
+Result exr_reader_open(const char *path, ExrReader *out)
+{
+    *out = (ExrReader){.path = path, .descriptor = open(path, O_RDONLY | O_CLOEXEC)};
+    struct stat status;
+    int error = 0;
+    if (out->descriptor < 0 || fstat(out->descriptor, &status) != 0)
+        error = errno;
+    else if (!S_ISREG(status.st_mode))
+        error = S_ISDIR(status.st_mode) ? EISDIR : ESPIPE;
+    if (error) {
+        exr_reader_close(out);
+        return result_fail(RESULT_IO, "%s: cannot read this file: %s", path, strerror(error));
+    }
+    out->size = status.st_size;
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = exr_message_keep;
+    setup.user_data = out;
+    setup.read_fn = read_at;
+    setup.size_fn = file_size;
+    setup.max_image_width = setup.max_image_height = EXR_SIZE_MAX;
+    exr_message_clear();
+    exr_result_t code = exr_start_read(&out->context, path, &setup);
+    if (code == EXR_ERR_SUCCESS)
+        return RESULT_OK;
+    Result result = exr_reader_fail(out, code);
+    exr_reader_close(out);
+    return result;
+}
+
+/* ---- writing ---- */
+
+static int64_t write_at(exr_const_context_t context, void *user, const void *data, uint64_t size,
+                        uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    (void)context;
+    (void)error; /* the file's own message is kept and says more */
+    ExrOutput *output = user;
+    return file_writer_put_at(&output->file, data, size, offset) == RESULT_OK ? (int64_t)size : -1;
+}
+
+Result exr_output_fail(const ExrOutput *output, exr_result_t code)
+{
+    if (output->file.error)
+        return result_fail(RESULT_IO, "%s: cannot write this file: %s", output->path,
+                           strerror(output->file.error));
+    return result_fail(code == EXR_ERR_OUT_OF_MEMORY ? RESULT_NO_MEMORY : RESULT_INTERNAL,
+                       "%s: OpenEXR refused to write: %s", output->path, exr_message(code));
+}
+
+Result exr_output_open(const char *path, ExrOutput *out)
+{
+    *out = (ExrOutput){.path = strdup(path)};
+    if (!out->path)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
+    Result result = file_writer_open(path, &out->file);
+    if (result != RESULT_OK)
+        return result;
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = exr_message_keep;
+    setup.user_data = out;
+    setup.write_fn = write_at;
+    exr_message_clear();
+    exr_result_t code = exr_start_write(&out->context, path, EXR_WRITE_FILE_DIRECTLY, &setup);
+    return code == EXR_ERR_SUCCESS ? RESULT_OK : exr_output_fail(out, code);
+}
+
+Result exr_output_close(ExrOutput *output, bool commit)
+{
+    exr_message_clear();
+    exr_result_t code = output->context ? exr_finish(&output->context) : EXR_ERR_SUCCESS;
+    Result result = RESULT_OK;
+    if (commit && code != EXR_ERR_SUCCESS)
+        result = exr_output_fail(output, code);
+    Result closed = file_writer_close(&output->file, commit && code == EXR_ERR_SUCCESS);
+    free(output->path);
+    return result == RESULT_OK ? closed : result;
 }

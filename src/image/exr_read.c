@@ -4,105 +4,12 @@
 #include "base/memory.h"
 #include "image/exr_core.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-typedef struct Reader {
-    const char *path;
-    int descriptor;
-    int64_t size;
-    exr_context_t context;
-} Reader;
-
-static Result fail_reader(const Reader *reader, exr_result_t code)
-{
-    return result_fail(code == EXR_ERR_OUT_OF_MEMORY ? RESULT_NO_MEMORY : RESULT_BAD_INPUT,
-                       "%s: not a readable OpenEXR file: %s", reader->path, exr_message(code));
-}
-
-static int64_t read_at(exr_const_context_t context, void *user, void *buffer, uint64_t size,
-                       uint64_t offset, exr_stream_error_func_ptr_t error)
-{
-    (void)context;
-    (void)error;
-    const Reader *reader = user;
-    uint64_t done = 0;
-    while (done < size) {
-        ssize_t got =
-            pread(reader->descriptor, (char *)buffer + done, size - done, (off_t)(offset + done));
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
-            return -1;
-        if (got == 0)
-            break;
-        done += (uint64_t)got;
-    }
-    return (int64_t)done;
-}
-
-static int64_t file_size(exr_const_context_t context, void *user)
-{
-    (void)context;
-    return ((const Reader *)user)->size;
-}
-
-static void reader_close(Reader *reader)
-{
-    if (reader->context)
-        exr_finish(&reader->context);
-    if (reader->descriptor >= 0)
-        close(reader->descriptor);
-}
-
-/* On success the caller ends with reader_close. */
-static Result reader_open(const char *path, Reader *out)
-{
-    *out = (Reader){.path = path, .descriptor = open(path, O_RDONLY | O_CLOEXEC)};
-    struct stat status;
-    int error = 0;
-    if (out->descriptor < 0 || fstat(out->descriptor, &status) != 0)
-        error = errno;
-    else if (!S_ISREG(status.st_mode))
-        error = S_ISDIR(status.st_mode) ? EISDIR : ESPIPE;
-    if (error) {
-        reader_close(out);
-        return result_fail(RESULT_IO, "%s: cannot read this file: %s", path, strerror(error));
-    }
-    out->size = status.st_size;
-    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    setup.error_handler_fn = exr_message_keep;
-    setup.user_data = out;
-    setup.read_fn = read_at;
-    setup.size_fn = file_size;
-    setup.max_image_width = setup.max_image_height = EXR_SIZE_MAX;
-    exr_message_clear();
-    exr_result_t code = exr_start_read(&out->context, path, &setup);
-    if (code == EXR_ERR_SUCCESS)
-        return RESULT_OK;
-    Result result = fail_reader(out, code);
-    reader_close(out);
-    return result;
-}
-
-/* The type of the channel called name; false when there is none. */
-static bool find_channel(const exr_attr_chlist_t *list, const char *name, exr_pixel_type_t *type)
-{
-    for (int i = 0; i < list->num_channels; i++)
-        if (strcmp(list->entries[i].name.str, name) == 0) {
-            *type = list->entries[i].pixel_type;
-            return true;
-        }
-    return false;
-}
 
 /* The format that the part says it holds, if its channels can hold it. */
-static bool declared_format(const Reader *reader, int part, const exr_attr_chlist_t *list,
+static bool declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,
                             PixelFormat *out)
 {
     const char *text;
@@ -117,7 +24,7 @@ static bool declared_format(const Reader *reader, int part, const exr_attr_chlis
         ExrLayout layout = exr_layout((PixelFormat)f);
         exr_pixel_type_t type;
         for (int i = 0; i < layout.channels; i++)
-            if (!find_channel(list, exr_channel_name((PixelFormat)f, i), &type) ||
+            if (!exr_find_channel(list, exr_channel_name((PixelFormat)f, i), &type) ||
                 type != layout.type)
                 return false;
         *out = (PixelFormat)f;
@@ -127,11 +34,12 @@ static bool declared_format(const Reader *reader, int part, const exr_attr_chlis
 }
 
 /* Other programs' files: the format that keeps every value. */
-static Result guess_format(const Reader *reader, const exr_attr_chlist_t *list, PixelFormat *out)
+static Result guess_format(const ExrReader *reader, const exr_attr_chlist_t *list, PixelFormat *out)
 {
     exr_pixel_type_t r, g, b, a;
-    if (find_channel(list, "R", &r) && find_channel(list, "G", &g) && find_channel(list, "B", &b)) {
-        if (!find_channel(list, "A", &a))
+    if (exr_find_channel(list, "R", &r) && exr_find_channel(list, "G", &g) &&
+        exr_find_channel(list, "B", &b)) {
+        if (!exr_find_channel(list, "A", &a))
             a = r;
         bool integers = r == EXR_PIXEL_UINT || g == EXR_PIXEL_UINT || b == EXR_PIXEL_UINT ||
                         a == EXR_PIXEL_UINT;
@@ -153,7 +61,7 @@ static Result guess_format(const Reader *reader, const exr_attr_chlist_t *list, 
     return RESULT_OK;
 }
 
-static Result part_format(const Reader *reader, int part, PixelFormat *out)
+static Result part_format(const ExrReader *reader, int part, PixelFormat *out)
 {
     exr_storage_t storage;
     const exr_attr_chlist_t *list;
@@ -161,7 +69,7 @@ static Result part_format(const Reader *reader, int part, PixelFormat *out)
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_channels(reader->context, part, &list);
     if (code != EXR_ERR_SUCCESS)
-        return fail_reader(reader, code);
+        return exr_reader_fail(reader, code);
     if (storage != EXR_STORAGE_SCANLINE)
         return result_fail(RESULT_UNSUPPORTED,
                            "%s: part %d is tiled or deep, expected flat scanlines", reader->path,
@@ -210,7 +118,7 @@ static bool narrow(const uint32_t *in, Image *image, int y, int rows)
 }
 
 /* scratch: room for one chunk, for formats that need narrow(). */
-static Result read_chunks(const Reader *reader, int part, int first_y, int chunk_rows,
+static Result read_chunks(const ExrReader *reader, int part, int first_y, int chunk_rows,
                           uint32_t *scratch, exr_decode_pipeline_t *pipeline, Image *image)
 {
     exr_context_t context = reader->context;
@@ -225,7 +133,7 @@ static Result read_chunks(const Reader *reader, int part, int first_y, int chunk
              chunk.height > chunk_rows))
             code = EXR_ERR_BAD_CHUNK_LEADER;
         if (code != EXR_ERR_SUCCESS)
-            return fail_reader(reader, code);
+            return exr_reader_fail(reader, code);
         point_at(pipeline, image->format, image->width,
                  scratch ? (uint8_t *)scratch : image_pixel(image, 0, y));
         if (y == 0)
@@ -233,7 +141,7 @@ static Result read_chunks(const Reader *reader, int part, int first_y, int chunk
         if (code == EXR_ERR_SUCCESS)
             code = exr_decoding_run(context, part, pipeline);
         if (code != EXR_ERR_SUCCESS)
-            return fail_reader(reader, code);
+            return exr_reader_fail(reader, code);
         if (scratch && !narrow(scratch, image, y, chunk.height))
             return result_fail(RESULT_BAD_INPUT, "%s: part %d holds integers beyond the %s range",
                                reader->path, part, format_info(image->format)->name);
@@ -245,7 +153,7 @@ static Result read_chunks(const Reader *reader, int part, int first_y, int chunk
 static void fill_alpha(const exr_attr_chlist_t *list, Image *image)
 {
     exr_pixel_type_t type;
-    if (format_info(image->format)->channels != 4 || find_channel(list, "A", &type))
+    if (format_info(image->format)->channels != 4 || exr_find_channel(list, "A", &type))
         return;
     size_t count = (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < count; i++)
@@ -255,7 +163,7 @@ static void fill_alpha(const exr_attr_chlist_t *list, Image *image)
             ((uint16_t *)image->pixels)[4 * i + 3] = 0x3c00;
 }
 
-static Result read_part(const Reader *reader, int part, Image *out)
+static Result read_part(const ExrReader *reader, int part, Image *out)
 {
     PixelFormat format = FORMAT_RGBA32F;
     Result result = part_format(reader, part, &format);
@@ -270,7 +178,7 @@ static Result read_part(const Reader *reader, int part, Image *out)
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_channels(reader->context, part, &list);
     if (code != EXR_ERR_SUCCESS)
-        return fail_reader(reader, code);
+        return exr_reader_fail(reader, code);
     int64_t width = (int64_t)window.max.x - window.min.x + 1;
     int64_t height = (int64_t)window.max.y - window.min.y + 1;
     if (width < 1 || width > EXR_SIZE_MAX || height < 1 || height > EXR_SIZE_MAX || chunk_rows < 1)
@@ -296,14 +204,14 @@ static Result read_part(const Reader *reader, int part, Image *out)
 Result exr_part_count(const char *path, int *count)
 {
     *count = 0;
-    Reader reader;
-    Result result = reader_open(path, &reader);
+    ExrReader reader;
+    Result result = exr_reader_open(path, &reader);
     if (result != RESULT_OK)
         return result;
     exr_result_t code = exr_get_count(reader.context, count);
     if (code != EXR_ERR_SUCCESS)
-        result = fail_reader(&reader, code);
-    reader_close(&reader);
+        result = exr_reader_fail(&reader, code);
+    exr_reader_close(&reader);
     return result;
 }
 
@@ -311,8 +219,8 @@ Result exr_read(const char *path, int part, Image *out, char name[64])
 {
     *out = (Image){0};
     name[0] = 0;
-    Reader reader;
-    Result result = reader_open(path, &reader);
+    ExrReader reader;
+    Result result = exr_reader_open(path, &reader);
     if (result != RESULT_OK)
         return result;
     int count = 0;
@@ -327,6 +235,6 @@ Result exr_read(const char *path, int part, Image *out, char name[64])
         image_free(out);
     else if (exr_get_name(reader.context, part, &text) == EXR_ERR_SUCCESS && text)
         snprintf(name, 64, "%s", text);
-    reader_close(&reader);
+    exr_reader_close(&reader);
     return result;
 }

@@ -34,6 +34,7 @@ refuse() {
 }
 
 mkdir directory directory.exr
+ln -s /dev/full full.exr
 : >empty.gltf
 : >empty.glb
 echo 'hello' >text.gltf
@@ -61,6 +62,11 @@ END
 }
 "$peel" render "$scenes/tutorial.gltf" --size 8x8 -o whole.png >"$sink" || failed=$((failed + 1))
 head -c 60 whole.png >truncated.png
+"$peel" render "$scenes/tutorial.gltf" --size 8x8 -o flat.exr >"$sink" || failed=$((failed + 1))
+"$peel" render "$scenes/tutorial.gltf" --size 32x32 --with truth --deep -o deep.exr >"$sink" ||
+    failed=$((failed + 1))
+head -c 900 deep.exr >header.exr
+head -c 2000 deep.exr >truncated.exr
 textured image_missing.gltf '{"uri":"nosuch.png"}'
 textured image_truncated.gltf '{"uri":"truncated.png"}'
 textured image_text.gltf '{"uri":"text.gltf"}'
@@ -131,6 +137,28 @@ refuse 'output directory missing' 'nosuch/out.png' render tutorial --size 8x8 -o
 refuse 'output is a directory' 'directory' render tutorial --size 8x8 --trace directory.exr
 refuse 'unwritable directory' '/proc/x.png' render tutorial --size 8x8 -o /proc/x.png
 refuse 'unwritable report' '/proc/x' compare tutorial --size 8x8 --report /proc/x
+refuse 'deep with ref' 'expected --with truth, not ref' render tutorial --size 8x8 -o a.exr --deep
+refuse 'deep with gl' 'expected --with truth, not gl' render tutorial -o a.exr --deep --with gl
+refuse 'deep PNG' 'ending in .exr' render tutorial --size 8x8 -o a.png --deep --with truth
+refuse 'deep with a trace' 'no --trace' render tutorial -o a.exr --deep --with truth --trace b.exr
+refuse 'deep, memory' 'deep image.*--max-memory' render tutorial -o a.exr --deep --with truth \
+    --size 512x512 --max-memory 9M
+refuse 'deep, directory missing' 'nosuch/a.exr' render tutorial -o nosuch/a.exr --deep --with truth
+refuse 'deep, disk full' 'No space left' render tutorial --size 8x8 -o full.exr --deep --with truth
+refuse 'flatten: no file' 'expected a deep EXR' flatten -o a.exr
+refuse 'flatten: no output' '-o FILE' flatten deep.exr
+refuse 'flatten: extension' '.png or .exr' flatten deep.exr -o a.jpg
+refuse 'flatten: two files' 'already given' flatten deep.exr deep.exr -o a.exr
+refuse 'flatten: missing file' 'nosuch.exr' flatten nosuch.exr -o a.exr
+refuse 'flatten: a directory' 'directory.exr' flatten directory.exr -o a.exr
+refuse 'flatten: text' 'text.gltf' flatten text.gltf -o a.exr
+refuse 'flatten: empty' 'empty.glb' flatten empty.glb -o a.exr
+refuse 'flatten: flat' 'flat.exr: flat or tiled' flatten flat.exr -o a.exr
+refuse 'flatten: header only' 'header.exr' flatten header.exr -o a.exr
+refuse 'flatten: truncated' 'truncated.exr' flatten truncated.exr -o a.exr
+refuse 'flatten: memory' '--max-memory' flatten deep.exr -o a.exr --max-memory 2K
+refuse 'flatten: memory, text' '--max-memory' flatten deep.exr -o a.exr --max-memory much
+refuse 'flatten: directory missing' 'nosuch/a.png' flatten deep.exr -o nosuch/a.png
 refuse 'one file for two' 'another file' render tutorial --size 8x8 -o a.exr --trace a.exr
 refuse 'disk full' '/dev/full' compare tutorial --size 8x8 --json /dev/full
 refuse 'report below a file' 'text.gltf' compare tutorial --size 8x8 --report text.gltf/out
