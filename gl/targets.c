@@ -28,7 +28,8 @@ bool targets_needs_code(const RenderDesc *desc)
 
 bool targets_needs_previous_code(const RenderDesc *desc)
 {
-    return targets_needs_code(desc) && desc->depth_range == DEPTH_RANGE_REVERSED;
+    return targets_needs_code(desc) && desc->depth_range == DEPTH_RANGE_REVERSED &&
+           !(desc->bias > 0.0f);
 }
 
 static Result check_limits(const Context *context, const RenderDesc *desc)

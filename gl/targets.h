@@ -62,7 +62,7 @@ void targets_destroy_layer(Layer *layer, bool shares_color); /* leaves an empty 
 
 /* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float: the two
  * greatest are both 1. The opaque depth can be either of them, a previous peel's only where the
- * near plane is at 1. Then a R32UI copy of the integers is needed. */
+ * near plane is at 1. Then a R32UI copy of the integers is needed. A bias is added to floats. */
 bool targets_needs_code(const RenderDesc *desc);
 bool targets_needs_previous_code(const RenderDesc *desc);
 /* Copies the depth integers of framebuffer to a code texture; nothing where it is 0. */

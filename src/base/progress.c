@@ -9,6 +9,7 @@
 
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static const char *label;
+static char context[64];
 static uint64_t steps;
 static double last_drawn;
 static atomic_bool active;
@@ -23,13 +24,19 @@ static double seconds(void)
 
 static void draw(uint64_t done)
 {
+    fprintf(stderr, "\r\033[K%s%s%s", context, context[0] ? ": " : "", label);
     if (steps)
-        fprintf(stderr, "\r\033[K%s %3.0f%%", label, 100.0 * (double)done / (double)steps);
+        fprintf(stderr, " %3.0f%%", 100.0 * (double)done / (double)steps);
     else if (done)
-        fprintf(stderr, "\r\033[K%s, step %llu", label, (unsigned long long)done);
-    else
-        fprintf(stderr, "\r\033[K%s", label);
+        fprintf(stderr, ", step %llu", (unsigned long long)done);
     fflush(stderr);
+}
+
+void progress_context(const char *text)
+{
+    pthread_mutex_lock(&mutex);
+    snprintf(context, sizeof context, "%s", text ? text : "");
+    pthread_mutex_unlock(&mutex);
 }
 
 void progress_begin(const char *what, uint64_t total)

@@ -4,6 +4,10 @@
 
 #include <stdint.h>
 
+/* Stands before what every later progress_begin says: what the work is part of. Copied, at most 63
+ * bytes of it; NULL for nothing. */
+void progress_context(const char *text);
+
 /* what: a few words. total: steps expected; 0 when it is not known. */
 void progress_begin(const char *what, uint64_t total);
 void progress_step(uint64_t done); /* from any thread; redraws at most ten times a second */

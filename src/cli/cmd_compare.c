@@ -1,5 +1,6 @@
 /* peel compare: all three renderers on one scene. */
 #include "base/file.h"
+#include "base/progress.h"
 #include "cli/bind.h"
 #include "cli/options.h"
 #include "frame/method.h"
@@ -28,7 +29,11 @@ enum {
 
 static const struct argp_option command_options[] = {
     {"json", KEY_JSON, "FILE", 0, "Write the figures as JSON", 0},
-    {"report", KEY_REPORT, "DIR", 0, "Write a page with pictures to DIR/index.html", 0},
+    {"report", KEY_REPORT, "DIR", 0,
+     "Write a page with pictures to DIR/index.html; with --method all, one about all methods, and "
+     "each "
+     "method's own in DIR/METHOD",
+     0},
     {"tolerance", KEY_TOLERANCE, "T", 0,
      "Allowed difference from truth at the 99th percentile, relative to max(1, value), where both "
      "see the same fragments in the same order (default: the method's, see peel methods)",
@@ -106,29 +111,55 @@ static Result open_directory(const char *path)
     return result;
 }
 
+/* The same failure, with the method in its message. */
+static Result name_method(Result result, MethodId id)
+{
+    char message[512];
+    snprintf(message, sizeof message, "%s", result_message());
+    return result_fail(result, "%s: %s", method_info(id)->name, message);
+}
+
+/* Renders and compares by one method, prints its row, and writes its page. */
+static Result compare_method(const CompareCommand *command, const Scene *scene, MethodId id,
+                             Threeway *report)
+{
+    RenderDesc desc = command->render.desc;
+    char context[64];
+    desc.method = id;
+    snprintf(context, sizeof context, "method %d of %d, %s", (int)id + 1, METHOD_COUNT,
+             method_info(id)->name);
+    progress_context(context);
+    Result result = threeway_run(scene, command->render.scene_path, &desc, bind_renderers,
+                                 command->tolerance, command->report != NULL, report);
+    progress_context(NULL);
+    if (result != RESULT_OK)
+        return name_method(result, id);
+    if (id == 0)
+        report_methods_head(report, stdout);
+    report_methods_row(report, stdout);
+    if (command->report)
+        result = report_html_write_method(report, command->line, command->report);
+    threeway_release_images(report);
+    if (result != RESULT_OK)
+        threeway_free(report);
+    return result;
+}
+
 /* Every method of the table. *agree: whether all of them do. */
 static Result compare_methods(const CompareCommand *command, const Scene *scene, bool *agree)
 {
     static Threeway reports[METHOD_COUNT];
     size_t count = 0;
-    Result result = options_check_output(command->json);
-    if (result == RESULT_OK && command->report)
-        result = result_fail(RESULT_BAD_INPUT, "--report: expected a single --method");
+    Result result = command->report ? open_directory(command->report) : RESULT_OK;
+    if (result == RESULT_OK)
+        result = options_check_output(command->json);
     if (result == RESULT_OK)
         result = options_check_fma(&command->render);
     *agree = true;
     for (int i = 0; i < METHOD_COUNT && result == RESULT_OK; i++) {
-        RenderDesc desc = command->render.desc;
-        desc.method = method_info((MethodId)i)->id;
-        result = threeway_run(scene, command->render.scene_path, &desc, bind_renderers,
-                              command->tolerance, false, &reports[count]);
-        if (result != RESULT_OK)
-            break;
-        threeway_release_images(&reports[count]);
-        if (count == 0)
-            report_methods_head(&reports[0], stdout);
-        report_methods_row(&reports[count], stdout);
-        *agree = *agree && reports[count++].agree;
+        result = compare_method(command, scene, (MethodId)i, &reports[i]);
+        if (result == RESULT_OK)
+            *agree &= reports[count++].agree;
     }
     if (result == RESULT_OK) {
         report_methods_foot(stdout);
@@ -137,7 +168,9 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
     }
     if (result == RESULT_OK && command->json)
         result = report_json_write_all(reports, count, command->json);
-    for (size_t i = 0; i < count; i++)
+    if (result == RESULT_OK && command->report)
+        result = report_html_write_all(reports, count, command->line, command->report);
+    for (size_t i = 0; i < METHOD_COUNT; i++)
         threeway_free(&reports[i]);
     return result;
 }

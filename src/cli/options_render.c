@@ -141,7 +141,10 @@ static const struct argp_option render_options[] = {
      "stored (default: depths are compared as stored) or raw (gl_FragCoord.z with a stored depth)",
      1},
     {"bias", KEY_BIAS, "B", 0,
-     "A peel takes fragments more than B of depth behind the previous one (default 0)", 1},
+     "With peel, peel-id and forward: a peel takes fragments more than B of depth behind the "
+     "previous "
+     "one (default 0)",
+     1},
     {"draw-order", KEY_DRAW_ORDER, "ORDER", 0,
      "Order of the instances: scene (default), reverse or shuffle=SEED", 1},
     {"sort", KEY_SORT, "UNIT", 0,
@@ -156,7 +159,7 @@ static const struct argp_option render_options[] = {
     {"accum", KEY_ACCUM, "FORMAT", 0, "rgba32f (default), rgba16f, rgba16 or rgba8", 1},
     {"gbuffer", KEY_GBUFFER, "SET", 0,
      "full (default: all 32-bit floats), seed (the original's formats) or compact (octahedral "
-     "normals, 8-bit material, no position)",
+     "normals, 8-bit material, no position; linked-list always)",
      1},
     {"position", KEY_POSITION, "SOURCE", 0,
      "Positions for lighting: from the G-buffer's buffer (default) or reconstruct (from depth; "

@@ -22,8 +22,8 @@ typedef enum MethodId {
     METHOD_PAINTER,
     METHOD_COUNT
 } MethodId;
-/* How a surface is lit: the original's point lights, or one directional light as in the WebGPU
- * tutorial; forward methods only. */
+/* How a surface is lit, by every method: the original's point lights, or one directional light as
+ * in the WebGPU tutorial. */
 typedef enum ShadingModel {
     SHADING_GGX = 0,
     SHADING_PHONG
@@ -147,7 +147,8 @@ typedef struct RenderDesc {
     GgxForm ggx;
     bool back_light; /* transparent surfaces reflect lights behind them (frame/shading.h) */
     OpaqueBlend opaque_blend;
-    float bias; /* a peel takes what lies farther behind the previous one than this */
+    float bias; /* a peel takes what lies farther behind the previous one than this; of METHOD_PEEL,
+                 * METHOD_PEEL_ID and METHOD_FORWARD */
     ShadingModel shading;
     DrawOrder draw_order;
     uint64_t draw_seed;

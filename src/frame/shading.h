@@ -35,6 +35,7 @@
  *   stored: p·0.5 + 0.5, where s(a) is −1 for a < 0, else 1
  *   decoded: p = stored·2 − 1;  z = (1 − |p.x|) − |p.y|;  z < 0: p as above
  *            N = (p, z) · inversesqrt(max(dot of it with itself, SHADING_TINY))
+ *   N = 0, of a vertex with a normal of length 0, has no such form and comes back as (0, 0, 1).
  * Position from the stored depth d as it is fetched, at integer pixel (x, y), y up, with the
  * view's Unprojection:
  *   t = max(d·depth_scale + depth_offset, inverse_far);  z = 1/t

@@ -3,6 +3,8 @@
  * Names: opaque.depth opaque.normal opaque.position opaque.diffuse opaque.material,
  * peel.K.depth peel.K.normal peel.K.position peel.K.diffuse peel.K.material peel.K.accum (K from
  * 0; accum after blending peel K), accum (after the opaque lighting pass), display.
+ * Of forward the lit, premultiplied opaque.color and peel.K.color stand for normal, position and
+ * diffuse, and material is there with the raw peel test alone.
  * peel.K.id (FORMAT_R32UI): the id buffer of the methods peel-id and linked-list, which gl has too.
  * Methods that do not peel have, as step 1, instead of peel.K.…: weighted-average.sum and .count,
  * weighted-sum.sum, weighted-blended.sum and .product (sums RGBA32F or RGBA16F, count and product

@@ -1,93 +1,57 @@
 #include "report/html.h"
 
 #include "base/file.h"
-#include "report/heatmap.h"
+#include "frame/method.h"
+#include "report/html_parts.h"
 #include "report/html_tables.h"
 #include "report/pictures.h"
 #include "report/summary.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-extern const char report_style_css[];
 
 /* ---- head and verdict ------------------------------------------------------------------------ */
 
-/* The settings that one looks for first. */
-static void put_summary(FileWriter *page, const Threeway *report)
+typedef struct Comparison {
+    const Threeway *report;
+    const char *command;
+    bool one_of_several; /* the page of all methods is one folder above */
+} Comparison;
+
+static void put_head(FileWriter *page, const Comparison *comparison)
 {
     static const char *const names[] = {"Size", "Method", "Peels", "Lights", "Profile"};
-    SummarySetting settings[SUMMARY_SETTINGS];
-    int count = summary_settings(report, settings);
-    const char *separator = "";
-    for (size_t n = 0; n < sizeof names / sizeof names[0]; n++)
-        for (int i = 0; i < count; i++) {
-            if (strcmp(settings[i].name, names[n]) != 0)
-                continue;
-            file_writer_print(page, "%s%s&nbsp;", separator, settings[i].name);
-            html_text(page, settings[i].value);
-            separator = " &middot; ";
-        }
-}
-
-static void put_head(FileWriter *page, const Threeway *report)
-{
-    file_writer_print(page, "<!doctype html>\n<html lang=\"en\">\n<head>\n"
-                            "<meta charset=\"utf-8\">\n"
-                            "<meta name=\"viewport\" content=\"width=device-width, "
-                            "initial-scale=1\">\n<title>");
-    html_text(page, report->scene_name);
-    file_writer_print(page, " - Peel comparison</title>\n"
-                            "<link rel=\"stylesheet\" href=\"style.css\">\n</head>\n<body>\n"
-                            "<header>\n<p class=\"kicker\">Peel comparison</p>\n<h1>");
-    html_text(page, report->scene_name);
-    file_writer_print(page, "</h1>\n<p class=\"path\">");
-    html_text(page, report->scene_path);
-    file_writer_print(page, "</p>\n<p class=\"path\">");
-    put_summary(page, report);
-    file_writer_print(page, "</p>\n</header>\n<main>\n");
+    const MethodInfo *method = method_info(comparison->report->desc.method);
+    html_open(page, "Peel comparison", comparison->report);
+    html_setting_line(page, comparison->report, names, sizeof names / sizeof names[0]);
+    file_writer_print(page, "<p class=\"path\">%s: ", method->name);
+    html_text(page, method->summary);
+    file_writer_print(page, ". Source: ");
+    html_text(page, method->paper);
+    file_writer_print(page, "</p>\n");
+    if (comparison->one_of_several)
+        file_writer_print(page, "<p class=\"path\"><a href=\"../index.html\">All methods on this "
+                                "scene</a></p>\n");
+    html_open_main(page);
 }
 
 static void put_verdict(FileWriter *page, const Threeway *report)
 {
-    char line[SUMMARY_LINE];
-    file_writer_print(page,
-                      "<section class=\"verdict %s\" aria-labelledby=\"verdict\">\n"
-                      "<h2 id=\"verdict\"><span class=\"sign\" aria-hidden=\"true\">%s</span>"
-                      " %s</h2>\n<ul>\n",
-                      report->agree ? "agree" : "differ", report->agree ? "&#10003;" : "&#10007;",
-                      report->agree ? "The three renderers agree" : "The renderers differ");
     void (*const lines[])(const Threeway *, char *) = {summary_pair_exact, summary_pair_truth,
-                                                       summary_residual, summary_speed};
+                                                       summary_residual,   summary_overflow,
+                                                       summary_nodes,      summary_speed};
+    char line[SUMMARY_LINE];
+    html_open_verdict(page, report->agree,
+                      !report->agree                            ? "The renderers differ"
+                      : method_info(report->desc.method)->exact ? "The three renderers agree"
+                                                                : "ref and gl agree");
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         lines[i](report, line);
-        if (!line[0])
-            continue;
-        file_writer_print(page, "<li>");
-        html_text(page, line);
-        file_writer_print(page, "</li>\n");
+        html_item(page, line);
     }
-    file_writer_print(page, "</ul>\n</section>\n");
+    html_close_verdict(page);
 }
 
 /* ---- pictures -------------------------------------------------------------------------------- */
-
-typedef struct Picture {
-    const char *shown, *linked; /* file names; linked NULL: the same */
-    int width, height;
-    bool lazy;
-} Picture;
-
-/* Opens a figure with a linked picture; the caller goes on with the text for alt. */
-static void put_picture(FileWriter *page, const Picture *picture)
-{
-    file_writer_print(page,
-                      "<figure>\n<a href=\"%s\"><img src=\"%s\" width=\"%d\" height=\"%d\"%s "
-                      "alt=\"",
-                      picture->linked ? picture->linked : picture->shown, picture->shown,
-                      picture->width, picture->height, picture->lazy ? " loading=\"lazy\"" : "");
-}
 
 static void put_finals(FileWriter *page, const Threeway *report)
 {
@@ -101,9 +65,9 @@ static void put_finals(FileWriter *page, const Threeway *report)
                             "<h2 id=\"images\">Final images</h2>\n<div class=\"three\">\n");
     for (int i = 0; i < RENDERER_COUNT; i++) {
         const Frame *frame = &report->frames[i];
-        put_picture(page, &(Picture){.shown = pictures_final(i, name),
-                                     .width = frame->display.width,
-                                     .height = frame->display.height});
+        html_open_picture(page, &(HtmlPicture){.shown = pictures_final(i, name),
+                                               .width = frame->display.width,
+                                               .height = frame->display.height});
         file_writer_print(page, "Final image of %s: ", threeway_renderer_name(i));
         html_text(page, report->scene_name);
         file_writer_print(page,
@@ -115,27 +79,6 @@ static void put_finals(FileWriter *page, const Threeway *report)
     file_writer_print(page, "</div>\n</section>\n");
 }
 
-static void put_scale(FileWriter *page)
-{
-    int low = (int)lround(log10(HEATMAP_LOW)), high = (int)lround(log10(HEATMAP_HIGH));
-    file_writer_print(page,
-                      "<div class=\"scale\">\n<img src=\"" PICTURES_SCALE
-                      "\" width=\"512\" height=\"16\" alt=\"Colour scale from dark blue at "
-                      "1e%d to pale yellow at 1e%d, logarithmic\">\n<ol>\n",
-                      low, high);
-    for (int power = low; power <= high; power++)
-        if (power == 0)
-            file_writer_print(page, "<li><span>1</span></li>\n");
-        else
-            file_writer_print(page, "<li><span>10<sup>%s%d</sup></span></li>\n",
-                              power < 0 ? "&minus;" : "", abs(power));
-    file_writer_print(page,
-                      "</ol>\n<p>Greatest absolute difference of a pixel's channels, linear "
-                      "values, logarithmic scale. <span class=\"key equal\"></span> black: equal. "
-                      "<span class=\"key nonfinite\"></span> magenta: not a finite number.</p>\n"
-                      "</div>\n");
-}
-
 static void put_differences(FileWriter *page, const Threeway *report)
 {
     char name[PICTURES_NAME], small[PICTURES_NAME];
@@ -145,12 +88,8 @@ static void put_differences(FileWriter *page, const Threeway *report)
     char rmse[SUMMARY_NUMBER];
     file_writer_print(page, "<section aria-labelledby=\"differences\">\n"
                             "<h2 id=\"differences\">Where they differ</h2>\n");
-    put_scale(page);
-    if (block > 1)
-        file_writer_print(page,
-                          "<p>Each point shown is the greatest difference of %d &times; %d pixels; "
-                          "the pictures link to the full size.</p>\n",
-                          block, block);
+    html_scale(page);
+    html_block_note(page, block);
     file_writer_print(page, "<div class=\"three\">\n");
     for (int i = 0; i < 3; i++) {
         const PairReport *pair = &report->pairs[i];
@@ -158,10 +97,10 @@ static void put_differences(FileWriter *page, const Threeway *report)
         const FinalMetrics *metrics = &pair->final;
         summary_count(metrics->differing, differing);
         summary_real(metrics->max_abs, greatest);
-        put_picture(page, &(Picture){.shown = pictures_preview(pair, block, small),
-                                     .linked = pictures_difference(pair, name),
-                                     .width = (image->width + block - 1) / block,
-                                     .height = (image->height + block - 1) / block});
+        html_open_picture(page, &(HtmlPicture){.shown = pictures_preview(pair, block, small),
+                                               .linked = pictures_difference(pair, name),
+                                               .width = (image->width + block - 1) / block,
+                                               .height = (image->height + block - 1) / block});
         file_writer_print(page, "Difference of %s and %s: %s pixels differ, at most by %s", a, b,
                           differing, greatest);
         file_writer_print(page, "\"></a>\n<figcaption><strong>%s &minus; %s</strong> ", a, b);
@@ -183,13 +122,13 @@ static void put_peel(FileWriter *page, const PeelPicture *peel)
     file_writer_print(page,
                       "<li class=\"peel\">\n<h3>Peel %d <span>peel.%d, %s pixels</span></h3>\n",
                       peel->peel + 1, peel->peel, summary_count(peel->pixels, pixels));
-    put_picture(page, &(Picture){pictures_added(peel, name), NULL, peel->added.width,
-                                 peel->added.height, true});
+    html_open_picture(page, &(HtmlPicture){pictures_added(peel, name), NULL, peel->added.width,
+                                           peel->added.height, true});
     file_writer_print(page,
                       "Light that peel %d adds\"></a>\n<figcaption>adds</figcaption>\n</figure>\n",
                       peel->peel + 1);
-    put_picture(page, &(Picture){pictures_accum(peel, name), NULL, peel->accum.width,
-                                 peel->accum.height, true});
+    html_open_picture(page, &(HtmlPicture){pictures_accum(peel, name), NULL, peel->accum.width,
+                                           peel->accum.height, true});
     file_writer_print(page,
                       "Image accumulated after peel %d\"></a>\n<figcaption>so far</figcaption>\n"
                       "</figure>\n</li>\n",
@@ -199,6 +138,8 @@ static void put_peel(FileWriter *page, const PeelPicture *peel)
 static void put_peels(FileWriter *page, const Threeway *report)
 {
     int peels = report->frames[RENDERER_REF].peels;
+    if (peels && !report->peel_count) /* the method has no image after each */
+        return;
     file_writer_print(page, "<section aria-labelledby=\"peels\">\n<h2 id=\"peels\">Peel by "
                             "peel</h2>\n");
     if (!report->peel_count)
@@ -220,21 +161,13 @@ static void put_peels(FileWriter *page, const Threeway *report)
 
 /* ---- the rest -------------------------------------------------------------------------------- */
 
-static void put_command(FileWriter *page, const char *command)
-{
-    file_writer_print(page, "<section aria-labelledby=\"again\">\n<h2 id=\"again\">Make this "
-                            "report again</h2>\n<pre><code>");
-    html_text(page, command);
-    file_writer_print(page, "</code></pre>\n</section>\n");
-}
-
-static void put_guide(FileWriter *page)
+static void put_guide(FileWriter *page, const Threeway *report)
 {
     file_writer_print(
         page,
         "<section aria-labelledby=\"guide\">\n<h2 id=\"guide\">How to read this</h2>\n<dl>\n"
-        "<dt>ref</dt><dd>Deferred depth peeling computed in plain C, meant to store exactly the "
-        "bits that the OpenGL pipeline stores.</dd>\n"
+        "<dt>ref</dt><dd>The method computed in plain C, meant to store exactly the bits that the "
+        "OpenGL pipeline stores.</dd>\n"
         "<dt>gl</dt><dd>The same pipeline in OpenGL. Any differing bit between ref and gl is a "
         "fault of one of the two.</dd>\n"
         "<dt>truth</dt><dd>Every fragment, sorted by exact depth, shaded and composited in double "
@@ -244,50 +177,51 @@ static void put_guide(FileWriter *page)
         "same order. Only these are judged against the tolerance; the difference is relative to "
         "max(1, value).</dd>\n"
         "<dt>ULP</dt><dd>Steps between neighbouring values of the stored format.</dd>\n"
-        "<dt>Verdict</dt><dd>Agree: ref and gl have no differing bit in any buffer, and ref and "
-        "truth agree at the 99th percentile within the tolerance.</dd>\n</dl>\n</section>\n");
+        "<dt>Verdict</dt><dd>Agree: ref and gl have no differing bit in any buffer%s.</dd>\n</dl>\n"
+        "</section>\n",
+        method_info(report->desc.method)->exact
+            ? ", and ref and truth agree at the 99th percentile within the tolerance"
+            : "; the method approximates, so its distance from truth is not judged");
 }
 
-static Result put_page(const Threeway *report, const char *command, FileWriter *page)
+static Result put_page(FileWriter *page, const void *what)
 {
-    put_head(page, report);
+    const Comparison *comparison = what;
+    const Threeway *report = comparison->report;
+    put_head(page, comparison);
     put_verdict(page, report);
     put_finals(page, report);
     put_differences(page, report);
     put_peels(page, report);
     html_tables(page, report);
-    put_command(page, command);
-    put_guide(page);
-    return file_writer_print(page, "</main>\n</body>\n</html>\n");
-}
-
-static Result write_page(const Threeway *report, const char *command, const char *path)
-{
-    FileWriter page;
-    Result result = file_writer_open(path, &page);
-    if (result != RESULT_OK)
-        return result;
-    result = put_page(report, command, &page);
-    Result closed = file_writer_close(&page, result == RESULT_OK);
-    return result == RESULT_OK ? closed : result;
+    html_command(page, comparison->command);
+    put_guide(page, report);
+    return html_close(page);
 }
 
 /* The page comes last, so that it never shows pictures that are not there. */
-Result report_html_write(const Threeway *report, const char *command, const char *dir)
+static Result write_comparison(const Comparison *comparison, const char *dir)
 {
     Result result = file_make_directories(dir);
     if (result == RESULT_OK)
-        result = pictures_write(report, dir);
-    if (result != RESULT_OK)
-        return result;
-    char *style = pictures_path(dir, "style.css"), *page = pictures_path(dir, "index.html");
-    result = style && page ? file_write(style, report_style_css, strlen(report_style_css))
-                           : RESULT_NO_MEMORY;
+        result = pictures_write(comparison->report, dir);
     if (result == RESULT_OK)
-        result = write_page(report, command, page);
+        result = html_write(dir, put_page, comparison);
     if (result == RESULT_OK)
-        result = pictures_remove_stale(report, dir);
-    free(style);
-    free(page);
+        result = pictures_remove_stale(comparison->report, dir);
+    return result;
+}
+
+Result report_html_write(const Threeway *report, const char *command, const char *dir)
+{
+    return write_comparison(&(Comparison){report, command, false}, dir);
+}
+
+Result report_html_write_method(const Threeway *report, const char *command, const char *dir)
+{
+    char *below = pictures_path(dir, method_info(report->desc.method)->name);
+    Result result =
+        below ? write_comparison(&(Comparison){report, command, true}, below) : RESULT_NO_MEMORY;
+    free(below);
     return result;
 }

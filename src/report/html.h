@@ -12,4 +12,15 @@
  * left there, and this one does not have, are removed; nothing else is. */
 Result report_html_write(const Threeway *report, const char *command, const char *dir);
 
+/* The same for one method of several: in dir/METHOD, METHOD the name of the report's, with a link
+ * to dir/index.html. */
+Result report_html_write_method(const Threeway *report, const char *command, const char *dir);
+
+/* dir/index.html, about all methods on one scene: a table, error against time, and each method's
+ * image and difference from truth. reports: count of them, at least one, of one scene and size,
+ * each method at most once, written by report_html_write_method before; of their images nothing is
+ * needed any more (threeway_release_images). command and failures as above. */
+Result report_html_write_all(const Threeway *reports, size_t count, const char *command,
+                             const char *dir);
+
 #endif

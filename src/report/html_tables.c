@@ -1,5 +1,6 @@
 #include "report/html_tables.h"
 
+#include "report/html_parts.h"
 #include "report/summary.h"
 
 #include <string.h>
@@ -9,60 +10,6 @@ enum {
     UNFOLDED = 24
 };
 
-void html_text(FileWriter *page, const char *text)
-{
-    for (const char *c = text; *c; c++) {
-        const char *entity = NULL;
-        switch (*c) {
-        case '&':
-            entity = "&amp;";
-            break;
-        case '<':
-            entity = "&lt;";
-            break;
-        case '>':
-            entity = "&gt;";
-            break;
-        case '"':
-            entity = "&quot;";
-            break;
-        case '\'':
-            entity = "&#39;";
-            break;
-        default:
-            if ((unsigned char)*c < 32 && *c != '\t' && *c != '\n')
-                entity = "&#65533;";
-        }
-        if (entity)
-            file_writer_put(page, entity, strlen(entity));
-        else
-            file_writer_put(page, c, 1);
-    }
-}
-
-static void open_table(FileWriter *page, const char *caption, const char *const *columns, int count)
-{
-    file_writer_print(page,
-                      "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"%s\">\n"
-                      "<table>\n<caption>%s</caption>\n<thead><tr>",
-                      caption, caption);
-    for (int i = 0; i < count; i++)
-        file_writer_print(page, "<th scope=\"col\">%s</th>", columns[i]);
-    file_writer_print(page, "</tr></thead>\n<tbody>\n");
-}
-
-static void close_table(FileWriter *page)
-{
-    file_writer_print(page, "</tbody>\n</table>\n</div>\n");
-}
-
-static void open_row(FileWriter *page, const char *class, const char *name)
-{
-    file_writer_print(page, "<tr%s><th scope=\"row\">", class);
-    html_text(page, name);
-    file_writer_print(page, "</th>");
-}
-
 static const char *pair_name(const PairReport *pair, char out[SUMMARY_NUMBER])
 {
     snprintf(out, SUMMARY_NUMBER, "%s\u00a0\u2212\u00a0%s", threeway_renderer_name(pair->a),
@@ -70,13 +17,16 @@ static const char *pair_name(const PairReport *pair, char out[SUMMARY_NUMBER])
     return out;
 }
 
-static void put_settings(FileWriter *page, const Threeway *report)
+void html_settings(FileWriter *page, const Threeway *report, bool of_method)
 {
     SummarySetting settings[SUMMARY_SETTINGS];
     int count = summary_settings(report, settings);
     file_writer_print(page, "<section aria-labelledby=\"settings\">\n"
                             "<h2 id=\"settings\">Settings</h2>\n<dl class=\"settings\">\n");
     for (int i = 0; i < count; i++) {
+        if (!of_method &&
+            (strcmp(settings[i].name, "Method") == 0 || strcmp(settings[i].name, "Peels") == 0))
+            continue;
         file_writer_print(page, "<div><dt>%s</dt><dd>", settings[i].name);
         html_text(page, settings[i].value);
         file_writer_print(page, "</dd></div>\n");
@@ -88,7 +38,7 @@ static void put_buffer_row(FileWriter *page, const SummaryRow *row)
 {
     char values[SUMMARY_NUMBER], differing[SUMMARY_NUMBER], ulp[SUMMARY_NUMBER];
     char difference[SUMMARY_NUMBER];
-    open_row(page, row->differing ? " class=\"off\"" : "", row->label);
+    html_open_row(page, row->differing ? " class=\"off\"" : "", row->label);
     file_writer_print(page, "<td>%zu</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>",
                       row->buffers, summary_count(row->values, values),
                       summary_count(row->differing, differing), summary_ulp(row->max_ulp, ulp),
@@ -107,12 +57,12 @@ static void put_all_buffers(FileWriter *page, const PairReport *pair)
 {
     file_writer_print(page, "<details>\n<summary>All %zu buffers, one row each</summary>\n",
                       pair->buffer_count);
-    open_table(page, "ref against gl, every buffer", buffer_columns, 8);
+    html_open_table(page, "ref against gl, every buffer", buffer_columns, 8);
     for (size_t i = 0; i < pair->buffer_count; i++) {
         SummaryRow row = summary_row_of(&pair->buffers[i]);
         put_buffer_row(page, &row);
     }
-    close_table(page);
+    html_close_table(page);
     file_writer_print(page, "</details>\n");
 }
 
@@ -127,7 +77,7 @@ static void put_buffers(FileWriter *page, const Threeway *report)
                             "<h2 id=\"buffers\">Buffer by buffer</h2>\n"
                             "<p>Every value that ref and gl store on the way to the image, "
                             "compared by its bits.</p>\n");
-    open_table(page, "ref against gl", buffer_columns, 8);
+    html_open_table(page, "ref against gl", buffer_columns, 8);
     for (; summary_row(pair, UNFOLDED, &cursor, &row); rows++)
         put_buffer_row(page, &row);
     file_writer_print(page,
@@ -149,10 +99,10 @@ static void put_final_table(FileWriter *page, const Threeway *report)
     char name[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER], differing[SUMMARY_NUMBER];
     char a[SUMMARY_NUMBER], b[SUMMARY_NUMBER], c[SUMMARY_NUMBER], d[SUMMARY_NUMBER];
     char ulp[SUMMARY_NUMBER], nonfinite[SUMMARY_NUMBER];
-    open_table(page, "Final image, all pixels", columns, 9);
+    html_open_table(page, "Final image, all pixels", columns, 9);
     for (int i = 0; i < 3; i++) {
         const FinalMetrics *final = &report->pairs[i].final;
-        open_row(page, "", pair_name(&report->pairs[i], name));
+        html_open_row(page, "", pair_name(&report->pairs[i], name));
         file_writer_print(
             page,
             "<td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td>"
@@ -162,7 +112,7 @@ static void put_final_table(FileWriter *page, const Threeway *report)
             summary_real(final->rmse, c), summary_psnr(final->psnr, d),
             summary_ulp(final->max_ulp, ulp), summary_count(final->nonfinite, nonfinite));
     }
-    close_table(page);
+    html_close_table(page);
 }
 
 static void put_unaffected_table(FileWriter *page, const Threeway *report)
@@ -171,18 +121,18 @@ static void put_unaffected_table(FileWriter *page, const Threeway *report)
                                           "99th percentile"};
     char name[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER];
     char a[SUMMARY_NUMBER], b[SUMMARY_NUMBER], c[SUMMARY_NUMBER];
-    open_table(page, "Final image, pixels with the same structure", columns, 5);
+    html_open_table(page, "Final image, pixels with the same structure", columns, 5);
     for (int i = 0; i < 3; i++) {
         const UnaffectedMetrics *unaffected = &report->pairs[i].unaffected;
         if (!report->pairs[i].has_unaffected)
             continue;
-        open_row(page, "", pair_name(&report->pairs[i], name));
+        html_open_row(page, "", pair_name(&report->pairs[i], name));
         file_writer_print(
             page, "<td>%s</td><td>%s</td><td>%s</td><td>%s</td></tr>\n",
             summary_count(unaffected->pixels, pixels), summary_real(unaffected->max_abs, a),
             summary_real(unaffected->max_rel, b), summary_real(unaffected->p99_rel, c));
     }
-    close_table(page);
+    html_close_table(page);
 }
 
 static void put_layers(FileWriter *page, const Threeway *report)
@@ -191,22 +141,22 @@ static void put_layers(FileWriter *page, const Threeway *report)
     SummaryLayer layers[SUMMARY_LAYERS];
     char value[SUMMARY_NUMBER];
     summary_layers(report, layers);
-    open_table(page, "Layers: ref's fragments, judged by truth", columns, 2);
+    html_open_table(page, "Layers: ref's fragments, judged by truth", columns, 2);
     for (int i = 0; i < SUMMARY_LAYERS; i++) {
-        open_row(page, "", layers[i].text);
+        html_open_row(page, "", layers[i].text);
         file_writer_print(page, "<td>%s</td></tr>\n", summary_count(layers[i].value, value));
     }
-    close_table(page);
+    html_close_table(page);
 }
 
 static void put_times(FileWriter *page, const Threeway *report)
 {
     static const char *const columns[] = {"Renderer", "Wall ms", "CPU ms", "Threads",
                                           "Peels",    "Buffers", "Made by"};
-    open_table(page, "Times and memory", columns, 7);
+    html_open_table(page, "Times and memory", columns, 7);
     for (int i = 0; i < RENDERER_COUNT; i++) {
         const Frame *frame = &report->frames[i];
-        open_row(page, "", threeway_renderer_name(i));
+        html_open_row(page, "", threeway_renderer_name(i));
         file_writer_print(page,
                           "<td>%.1f</td><td>%.1f</td><td>%d</td><td>%d</td><td>%.1f MiB</td>"
                           "<td class=\"words\">",
@@ -218,7 +168,7 @@ static void put_times(FileWriter *page, const Threeway *report)
         html_text(page, frame->renderer);
         file_writer_print(page, "</td></tr>\n");
     }
-    close_table(page);
+    html_close_table(page);
     file_writer_print(page, "<p>" SUMMARY_TIME_NOTE "</p>\n");
 }
 
@@ -232,5 +182,5 @@ void html_tables(FileWriter *page, const Threeway *report)
     put_layers(page, report);
     put_times(page, report);
     file_writer_print(page, "</section>\n");
-    put_settings(page, report);
+    html_settings(page, report, true);
 }

@@ -47,6 +47,10 @@ static json_t *renderers(Document *json, const Threeway *report)
         document_put(json, one, "geometry_passes", json_integer(frame->geometry_passes));
         document_put(json, one, "fragments_shaded", count(frame->fragments_shaded));
         document_put(json, one, "buffer_bytes", count(frame->buffer_bytes));
+        if (frame->node_bytes) {
+            document_put(json, one, "nodes", count(frame->nodes));
+            document_put(json, one, "node_bytes", count(frame->node_bytes));
+        }
         document_put(json, one, "version", string(frame->version));
         document_put(json, one, "renderer", string(frame->renderer));
         document_put(json, object, threeway_renderer_name(i), one);
@@ -126,10 +130,12 @@ static json_t *layers(Document *json, const Threeway *report)
 static json_t *document(Document *json, const Threeway *report)
 {
     const Frame *ref = &report->frames[RENDERER_REF];
+    const MethodInfo *method = method_info(report->desc.method);
     json_t *root = json_object();
     document_put(json, root, "scene", string(report->scene_path));
     document_put(json, root, "size", json_pack("[ii]", report->desc.width, report->desc.height));
-    document_put(json, root, "method", string(method_info(report->desc.method)->name));
+    document_put(json, root, "method", string(method->name));
+    document_put(json, root, "exact", json_boolean(method->exact));
     document_put(json, root, "passes", json_integer(ref->peels));
     document_put(json, root, "profile", string(report->seed_profile ? "seed" : "default"));
     document_put(json, root, "fma", json_boolean(ref->fused));

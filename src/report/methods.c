@@ -36,9 +36,5 @@ void report_methods_row(const Threeway *report, FILE *out)
 
 void report_methods_foot(FILE *out)
 {
-    fprintf(out,
-            "passes: that blended something; geometry: passes over the transparent geometry, in gl "
-            "(the one over the opaque\nis extra, linked-list does both at once); shaded: fragments "
-            "lit, opaque ones included; ref - gl: differing\nvalues in all buffers; then ref "
-            "against truth. Times are of one frame each, gl's with compiling its shaders.\n");
+    fprintf(out, SUMMARY_METHODS_NOTE "\n");
 }

@@ -43,7 +43,7 @@ const char *pictures_preview(const PairReport *pair, int block, char out[PICTURE
 
 int pictures_block(const Threeway *report)
 {
-    return (report->frames[RENDERER_REF].final.width + PREVIEW_WIDTH - 1) / PREVIEW_WIDTH;
+    return (report->desc.width + PREVIEW_WIDTH - 1) / PREVIEW_WIDTH;
 }
 
 const char *pictures_accum(const PeelPicture *peel, char out[PICTURES_NAME])
@@ -135,6 +135,13 @@ static Result write_difference(const Threeway *report, const PairReport *pair, c
     return write_made(made, &image, dir, pictures_preview(pair, block, name));
 }
 
+Result pictures_write_scale(const char *dir)
+{
+    Image image;
+    Result made = heatmap_scale(SCALE_WIDTH, 16, &image);
+    return write_made(made, &image, dir, PICTURES_SCALE);
+}
+
 Result pictures_write(const Threeway *report, const char *dir)
 {
     char name[PICTURES_NAME];
@@ -143,11 +150,8 @@ Result pictures_write(const Threeway *report, const char *dir)
         result = write_image(&report->frames[i].display, dir, pictures_final(i, name));
     for (int i = 0; i < 3 && result == RESULT_OK; i++)
         result = write_difference(report, &report->pairs[i], dir);
-    if (result == RESULT_OK) {
-        Image image;
-        Result made = heatmap_scale(SCALE_WIDTH, 16, &image);
-        result = write_made(made, &image, dir, PICTURES_SCALE);
-    }
+    if (result == RESULT_OK)
+        result = pictures_write_scale(dir);
     for (size_t i = 0; i < report->peel_count && result == RESULT_OK; i++)
         result = write_peel(&report->peels[i], dir);
     return result;

@@ -22,6 +22,9 @@ const char *pictures_added(const PeelPicture *peel, char out[PICTURES_NAME]);
  * power 1/2.2; where a layer has no fragment they show a checkerboard. */
 Result pictures_write(const Threeway *report, const char *dir);
 
+/* The legend alone. */
+Result pictures_write_scale(const char *dir);
+
 /* Removes the pictures of peels that are not among the report's: files that pictures_accum and
  * pictures_added name, and no others. IO with a message when one stays. */
 Result pictures_remove_stale(const Threeway *report, const char *dir);

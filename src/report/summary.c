@@ -103,7 +103,11 @@ SummaryTotals summary_totals(const PairReport *pair)
 static void describe_passes(const Threeway *report, char *out, size_t size)
 {
     int peels = report->frames[RENDERER_REF].peels;
-    if (report->desc.passes)
+    if (!method_info(report->desc.method)->exact)
+        snprintf(out, size, "none, one pass");
+    else if (report->desc.method == METHOD_LINKED_LIST && !report->desc.passes)
+        snprintf(out, size, "%d layers, one pass", peels);
+    else if (report->desc.passes)
         snprintf(out, size, "%d, limit %d", peels, report->desc.passes);
     else
         snprintf(out, size, "%d, until a peel yields no fragment", peels);
@@ -120,16 +124,39 @@ static void describe_lights(const Threeway *report, char *out, size_t size)
         snprintf(out, size, "first %d of %zu", limit, report->light_count);
 }
 
-int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS])
-{
-    static const char *const culls[] = {"as glTF says", "opaque only (seed)", "none"};
-    const RenderDesc *desc = &report->desc;
-    int n = 0;
 #define SETTING(label, ...)                                                                        \
     do {                                                                                           \
         out[n].name = label;                                                                       \
         snprintf(out[n++].value, sizeof out[0].value, __VA_ARGS__);                                \
     } while (0)
+
+/* Those that few comparisons set, or one method has. Returns n, one more for each. */
+static int add_options(const RenderDesc *desc, SummarySetting *out, int n)
+{
+    static const char *const weights[] = {"9", "7", "8", "10"};
+    if (desc->bias > 0.0f)
+        SETTING("Bias", "%g", (double)desc->bias);
+    if (desc->draw_order == DRAW_ORDER_SHUFFLE)
+        SETTING("Draw order", "shuffled, seed %" PRIu64, desc->draw_seed);
+    else if (desc->draw_order == DRAW_ORDER_REVERSE)
+        SETTING("Draw order", "reversed");
+    if (desc->sort != SORT_OBJECTS || desc->method == METHOD_PAINTER)
+        SETTING("Painter sorts", "%s", desc->sort == SORT_TRIANGLES ? "triangles" : "objects");
+    if (desc->weight != WEIGHT_9 || desc->method == METHOD_WEIGHTED_BLENDED)
+        SETTING("Weight", "equation %s", weights[desc->weight]);
+    if (desc->nodes_per_pixel)
+        SETTING("Nodes per pixel", "%d", desc->nodes_per_pixel);
+    if (desc->post == POST_EDGES)
+        SETTING("Post-process", "edges, of linked-list");
+    return n;
+}
+
+int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS])
+{
+    static const char *const culls[] = {"as glTF says", "opaque only (seed)", "none"};
+    static const char *const ranges[] = {"", ", zero-one", ", reversed"};
+    const RenderDesc *desc = &report->desc;
+    int n = 0;
     SETTING("Size", "%d × %d", desc->width, desc->height);
     SETTING("Method", "%s", method_info(desc->method)->name);
     out[n].name = "Peels";
@@ -141,22 +168,27 @@ int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS
     SETTING("Camera", "%d", desc->camera);
     SETTING("Time", "%g s", desc->time);
     SETTING("Profile", "%s", report->seed_profile ? "seed" : "default");
-    SETTING("Depth", "%s, %s", format_info(render_desc_depth(desc))->name,
-            desc->depth_func == DEPTH_LEQUAL ? "lequal" : "less");
+    SETTING("Depth", "%s, %s%s", format_info(render_desc_depth(desc))->name,
+            desc->depth_func == DEPTH_LEQUAL ? "lequal" : "less", ranges[desc->depth_range]);
     SETTING("Accumulation", "%s", format_info(desc->accum)->name);
-    SETTING("G-buffer", "%s, position %s", gbuffer_name(desc->gbuffer),
+    SETTING("G-buffer", "%s, position %s",
+            gbuffer_name(desc->method == METHOD_LINKED_LIST ? GBUFFER_COMPACT : desc->gbuffer),
             render_desc_layout(desc).position == FORMAT_NONE ? "from depth" : "stored");
     SETTING("Peel test", "%s", desc->peel_test == PEEL_TEST_RAW ? "raw" : "stored");
     SETTING("Culling", "%s", culls[desc->cull]);
     SETTING("Normals", "%s", desc->normals == NORMALS_KEPT ? "kept" : "faced");
-    SETTING("Shading", "GGX, %s form%s", desc->ggx == GGX_STABLE ? "stable" : "source",
-            desc->back_light ? ", back light" : "");
+    if (desc->shading == SHADING_PHONG)
+        SETTING("Shading", "Phong, one directional light");
+    else
+        SETTING("Shading", "GGX, %s form%s", desc->ggx == GGX_STABLE ? "stable" : "source",
+                desc->back_light ? ", back light" : "");
     SETTING("Arithmetic", "%s",
             report->frames[RENDERER_REF].fused ? "fused multiply-add" : "separate multiply, add");
     SETTING("Tolerance", "%g", report->tolerance);
-#undef SETTING
-    return n;
+    return add_options(desc, out, n);
 }
+
+#undef SETTING
 
 void summary_pair_exact(const Threeway *report, char out[SUMMARY_LINE])
 {
@@ -186,12 +218,17 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
     const PairReport *pair = &report->pairs[1];
     const UnaffectedMetrics *unaffected = &pair->unaffected;
     if (!method_info(report->desc.method)->exact) {
-        char most[SUMMARY_NUMBER], rmse[SUMMARY_NUMBER];
-        snprintf(out, SUMMARY_LINE,
-                 "ref and truth: %s approximates, so it is not judged; largest difference %s, root "
-                 "mean square %s.",
-                 method_info(report->desc.method)->name, summary_real(pair->final.max_abs, most),
-                 summary_real(pair->final.rmse, rmse));
+        char most[SUMMARY_NUMBER], rmse[SUMMARY_NUMBER], nonfinite[SUMMARY_NUMBER];
+        int length = snprintf(
+            out, SUMMARY_LINE,
+            "ref and truth: %s approximates, so it is not judged; largest difference %s, root "
+            "mean square %s.",
+            method_info(report->desc.method)->name, summary_real(pair->final.max_abs, most),
+            summary_real(pair->final.rmse, rmse));
+        if (pair->final.nonfinite)
+            snprintf(out + length, (size_t)(SUMMARY_LINE - length),
+                     " Not finite, which is a fault: %s pixels.",
+                     summary_count(pair->final.nonfinite, nonfinite));
         return;
     }
     if (!report->structure.same_scene) {
@@ -219,9 +256,15 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
              summary_count(unaffected->pixels, same), summary_count(pair->final.pixels, all),
              report->structure.known ? ", those with the same fragments in the same order" : "");
     size_t length = strlen(out);
-    if (report->seed_profile && unaffected->p99_rel > report->tolerance)
+    if (unaffected->p99_rel <= report->tolerance)
+        return;
+    if (report->seed_profile)
         snprintf(out + length, SUMMARY_LINE - length,
                  " The seed profile stores in 8 and 16 bits, coarser than this tolerance allows.");
+    else if (render_desc_layout(&report->desc).normal == FORMAT_RG16)
+        snprintf(out + length, SUMMARY_LINE - length,
+                 " The compact G-buffer stores in 8 and 16 bits, coarser than this tolerance "
+                 "allows.");
 }
 
 void summary_residual(const Threeway *report, char out[SUMMARY_LINE])
@@ -234,6 +277,34 @@ void summary_residual(const Threeway *report, char out[SUMMARY_LINE])
                  "The pass limit hides fragments in %s pixels; up to %.3g of their light would "
                  "still pass (residual transmittance).",
                  summary_count(frame->residual_pixels, pixels), frame->residual_max);
+}
+
+void summary_nodes(const Threeway *report, char out[SUMMARY_LINE])
+{
+    const Frame *frame = &report->frames[RENDERER_REF];
+    char nodes[SUMMARY_NUMBER], lost[SUMMARY_NUMBER];
+    out[0] = 0;
+    if (!frame->node_bytes)
+        return;
+    int length = snprintf(out, SUMMARY_LINE, "The lists need %s nodes x %u bytes = %.1f MiB",
+                          summary_count(frame->nodes, nodes), (unsigned)frame->node_bytes,
+                          (double)frame->nodes * (double)frame->node_bytes / 1048576.0);
+    uint64_t overflow = report->structure.layers.lost_to_overflow;
+    if (overflow)
+        snprintf(out + length, (size_t)(SUMMARY_LINE - length),
+                 "; there was no room for %s of them.", summary_count(overflow, lost));
+    else
+        snprintf(out + length, (size_t)(SUMMARY_LINE - length), ".");
+}
+
+void summary_overflow(const Threeway *report, char out[SUMMARY_LINE])
+{
+    char pixels[SUMMARY_NUMBER];
+    uint64_t overflowed = report->structure.layers.overflowed;
+    out[0] = 0;
+    if (overflowed)
+        snprintf(out, SUMMARY_LINE, "Sums left the range of their format (%s) in %s pixels.",
+                 format_info(report->desc.accum)->name, summary_count(overflowed, pixels));
 }
 
 void summary_speed(const Threeway *report, char out[SUMMARY_LINE])
@@ -254,6 +325,7 @@ void summary_layers(const Threeway *report, SummaryLayer out[SUMMARY_LAYERS])
         {"lost_to_ties", "of those never peeled: equal depth", layers->lost_to_ties},
         {"lost_to_pass_limit", "of those never peeled: passes ended first",
          layers->lost_to_pass_limit},
+        {"lost_to_overflow", "nodes that a list had no room for", layers->lost_to_overflow},
         {"order_inversions", "neighbours that truth orders the other way",
          structure->order_inversions},
         {"coverage_differs", "fragments that exact, unsnapped coverage would change",

@@ -10,7 +10,7 @@
 enum {
     SUMMARY_NUMBER = 40,
     SUMMARY_LINE = 320,
-    SUMMARY_SETTINGS = 20
+    SUMMARY_SETTINGS = 24
 };
 
 /* One row of a pair's buffer table: one buffer, or a run of buffers that are all equal. */
@@ -49,11 +49,22 @@ int summary_settings(const Threeway *report, SummarySetting out[SUMMARY_SETTINGS
 /* Below every table of times. */
 #define SUMMARY_TIME_NOTE "gl's time includes compiling its shaders."
 
+/* Below every table of methods. */
+#define SUMMARY_METHODS_NOTE                                                                       \
+    "passes: that blended something; geometry: passes over the transparent geometry, in gl (the "  \
+    "one over the opaque\nis extra, linked-list does both at once); shaded: fragments lit, "       \
+    "opaque ones included; ref - gl: differing\nvalues in all buffers; then ref against truth. "   \
+    "Times are of one frame each, gl's with compiling its shaders."
+
 /* One sentence each. */
 void summary_pair_exact(const Threeway *report, char out[SUMMARY_LINE]); /* ref against gl */
 void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE]); /* ref against truth */
 /* "" unless the pass limit hid fragments. */
 void summary_residual(const Threeway *report, char out[SUMMARY_LINE]);
+/* "" unless the method has lists: their memory, and what found no room. */
+void summary_nodes(const Threeway *report, char out[SUMMARY_LINE]);
+/* "" unless a sum overflowed. */
+void summary_overflow(const Threeway *report, char out[SUMMARY_LINE]);
 /* The same for the times: gl's wall time over ref's. "" when it cannot be said. */
 void summary_speed(const Threeway *report, char out[SUMMARY_LINE]);
 
@@ -72,7 +83,7 @@ typedef struct SummaryLayer {
 } SummaryLayer;
 
 enum {
-    SUMMARY_LAYERS = 13
+    SUMMARY_LAYERS = 14
 };
 void summary_layers(const Threeway *report, SummaryLayer out[SUMMARY_LAYERS]);
 

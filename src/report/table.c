@@ -89,22 +89,28 @@ static void print_finals(const Threeway *report, FILE *out)
     }
 }
 
-static void print_layers(const Threeway *report, FILE *out)
+static void print_line(void (*summary)(const Threeway *, char *), const Threeway *report, FILE *out)
 {
-    SummaryLayer layers[SUMMARY_LAYERS];
-    char value[SUMMARY_NUMBER], line[SUMMARY_LINE];
-    summary_layers(report, layers);
-    fprintf(out, "\nlayers\n");
-    for (int i = 0; i < SUMMARY_LAYERS; i++)
-        fprintf(out, "%15s  %s\n", summary_count(layers[i].value, value), layers[i].text);
-    summary_residual(report, line);
+    char line[SUMMARY_LINE];
+    summary(report, line);
     if (line[0])
         fprintf(out, "%s\n", line);
 }
 
+static void print_layers(const Threeway *report, FILE *out)
+{
+    SummaryLayer layers[SUMMARY_LAYERS];
+    char value[SUMMARY_NUMBER];
+    summary_layers(report, layers);
+    fprintf(out, "\nlayers\n");
+    for (int i = 0; i < SUMMARY_LAYERS; i++)
+        fprintf(out, "%15s  %s\n", summary_count(layers[i].value, value), layers[i].text);
+    print_line(summary_residual, report, out);
+    print_line(summary_overflow, report, out);
+}
+
 static void print_times(const Threeway *report, FILE *out)
 {
-    char line[SUMMARY_LINE];
     fprintf(out, "\n%-18s %11s %11s %9s %7s %10s  %s\n", "time", "wall ms", "CPU ms", "threads",
             "peels", "buffer MiB", "made by");
     for (int i = 0; i < RENDERER_COUNT; i++) {
@@ -115,14 +121,12 @@ static void print_times(const Threeway *report, FILE *out)
                 frame->version[0] && frame->renderer[0] ? ", " : "", frame->renderer);
     }
     fprintf(out, "(" SUMMARY_TIME_NOTE ")\n");
-    summary_speed(report, line);
-    if (line[0])
-        fprintf(out, "%s\n", line);
+    print_line(summary_speed, report, out);
+    print_line(summary_nodes, report, out);
 }
 
 void report_table_print(const Threeway *report, FILE *out)
 {
-    char line[SUMMARY_LINE];
     print_settings(report, out);
     for (int i = 0; i < 3; i++)
         print_buffers(&report->pairs[i], out);
@@ -130,8 +134,6 @@ void report_table_print(const Threeway *report, FILE *out)
     print_layers(report, out);
     print_times(report, out);
     fprintf(out, "\n%s\n", report->agree ? "AGREE" : "DIFFER");
-    summary_pair_exact(report, line);
-    fprintf(out, "%s\n", line);
-    summary_pair_truth(report, line);
-    fprintf(out, "%s\n", line);
+    print_line(summary_pair_exact, report, out);
+    print_line(summary_pair_truth, report, out);
 }

@@ -196,7 +196,8 @@ static bool judge(const Threeway *report)
     if (ref_truth->final.nonfinite > 0)
         return false;
     return !method_info(report->desc.method)->exact ||
-           (ref_truth->unaffected.p99_rel <= report->tolerance && report->structure.same_scene);
+           (ref_truth->unaffected.pixels > 0 &&
+            ref_truth->unaffected.p99_rel <= report->tolerance && report->structure.same_scene);
 }
 
 /* ---- pictures of the peels ---- */
@@ -343,19 +344,23 @@ void threeway_release_images(Threeway *report)
         image_free(&report->frames[i].final);
         image_free(&report->frames[i].display);
     }
-}
-
-void threeway_free(Threeway *report)
-{
-    for (int i = 0; i < RENDERER_COUNT; i++)
-        frame_free(&report->frames[i]);
-    for (int i = 0; i < 3; i++)
-        free(report->pairs[i].buffers);
     for (size_t i = 0; i < report->peel_count; i++) {
         image_free(&report->peels[i].accum);
         image_free(&report->peels[i].added);
     }
     free(report->peels);
+    report->peels = NULL;
+    report->peel_count = 0;
     free(report->structure.same);
+    report->structure.same = NULL;
+}
+
+void threeway_free(Threeway *report)
+{
+    threeway_release_images(report);
+    for (int i = 0; i < RENDERER_COUNT; i++)
+        frame_free(&report->frames[i]);
+    for (int i = 0; i < 3; i++)
+        free(report->pairs[i].buffers);
     *report = (Threeway){0};
 }

@@ -64,7 +64,7 @@ enum {
 Result threeway_run(const Scene *scene, const char *path, const RenderDesc *desc,
                     const Renderer renderers[RENDERER_COUNT], double tolerance, bool keep_pictures,
                     Threeway *out);
-/* Frees the pictures and keeps the figures. */
+/* Frees the images, the pictures of peels and the structure of each pixel; keeps the figures. */
 void threeway_release_images(Threeway *report);
 void threeway_free(Threeway *report);
 

@@ -134,6 +134,8 @@ refuse 'unwritable report' '/proc/x' compare tutorial --size 8x8 --report /proc/
 refuse 'one file for two' 'another file' render tutorial --size 8x8 -o a.exr --trace a.exr
 refuse 'disk full' '/dev/full' compare tutorial --size 8x8 --json /dev/full
 refuse 'report below a file' 'text.gltf' compare tutorial --size 8x8 --report text.gltf/out
+refuse 'report of all methods below a file' 'text.gltf' compare tutorial --size 8x8 --method all \
+    --report text.gltf/out
 refuse 'scene list: unknown' 'nosuch' scenes nosuch -o x.gltf
 refuse 'scene without output' '-o FILE' scenes tutorial
 refuse 'json in a missing directory' 'nosuch/x.json' compare tutorial --size 8x8 --json nosuch/x.json

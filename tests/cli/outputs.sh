@@ -67,6 +67,38 @@ for choice in '--depth d24' '--depth d16' '--accum rgba16f' '--accum rgba16' '--
 done
 exits 2 'the raw test with 16 bits repeats layers and loses others' \
     "$peel" compare tutorial --size 64x36 --tolerance 1 --peel-test raw --depth d16
+"$peel" methods | sed -n 's/^\([a-z][-a-z]*\) .*/\1/p' >methods
+expect 'methods' test "$(wc -l <methods)" = 10
+# The one with 8-bit materials differs from truth: those behind it must be there all the same.
+exits 2 'every method' "$peel" compare chain.gltf --size 33x17 --lights 1 --method all --json all.json
+exits 0 'every method, with room' "$peel" compare chain.gltf --size 33x17 --lights 1 --method all \
+    --tolerance 1 --sort triangles --weight 7 --nodes-per-pixel 40 --post edges --bias 0.0001 \
+    --shading phong
+while read -r method; do
+    has 'every method' output "^$method "
+    has 'JSON of every method' all.json "\"method\": \"$method\""
+    expect "trace of $method" "$peel" render chain.gltf --size 33x17 --lights 1 --passes 1 \
+        --method "$method" --trace "$method.exr"
+    oiiotool --info -v -a "$method.exr" >info
+    case $method in
+    peel) names='peel.0.normal peel.0.accum' ;;
+    peel-id | linked-list) names='peel.0.id peel.0.accum' ;;
+    forward) names='opaque.color peel.0.color peel.0.accum' ;;
+    dual) names='dual.first.depth dual.0.depth dual.0.front_normal dual.0.back_material
+        dual.0.back_accum peel.0.accum' ;;
+    forward-dual) names='forward-dual.first.depth forward-dual.0.depth forward-dual.0.front
+        forward-dual.0.back forward-dual.0.back_accum' ;;
+    weighted-average) names="$method.sum $method.count" ;;
+    weighted-sum) names=$method.sum ;;
+    weighted-blended) names="$method.sum $method.product" ;;
+    painter) names=painter.layers ;;
+    *) names='no names are known here' ;;
+    esac
+    for name in opaque.depth $names accum display; do
+        has "trace of $method" info "\"$name\""
+    done
+done <methods
+
 exits 0 'report and JSON' "$peel" compare chain.gltf --size 64x36 --passes 1 --json j.json \
     --report report/of/this
 has 'the pass limit' output 'passes ended first'
@@ -74,6 +106,28 @@ has 'JSON' j.json '"lost_to_pass_limit"'
 has 'JSON' j.json '"residual"'
 expect 'report' test -s report/of/this/index.html
 has 'report' report/of/this/index.html 'peel compare chain.gltf --size 64x36 --passes 1'
+exits 0 'all methods, report and JSON' "$peel" compare chain.gltf --size 64x36 --method all \
+    --tolerance 1 --json all.json --report methods/of/this
+has 'JSON of all methods' all.json '"agree": true'
+has 'report of all methods' methods/of/this/index.html \
+    'peel compare chain.gltf --size 64x36 --method all'
+"$peel" methods | sed -n 's/^\([a-z][a-z-]*\) .*/\1/p' >names
+expect 'the table of methods' test "$(wc -l <names)" -ge 10
+while read -r name; do
+    has 'JSON of all methods' all.json "\"method\": \"$name\""
+    has 'report of all methods' methods/of/this/index.html "<h3><a href=\"$name/index.html\">"
+    has 'report of a method' "methods/of/this/$name/index.html" 'href="../index.html"'
+done <names
+for page in methods/of/this/index.html methods/of/this/*/index.html; do
+    grep -o -E '(src|href)="[^"]*"' "$page" | cut -d '"' -f 2 | sort -u >links
+    while read -r link; do
+        expect "a file that $page names" test -s "${page%/*}/$link"
+    done <links
+done
+exits 2 'all methods, a tolerance that nothing meets' "$peel" compare chain.gltf --size 64x36 --method all \
+    --tolerance 1e-30 --json all.json --report methods/of/this
+has 'every method, also after one that differs' all.json '"method": "painter"'
+has 'every method, also after one that differs' methods/of/this/index.html '[0-9] of [0-9]* methods differ'
 exits 0 '1x1' "$peel" compare chain.gltf --size 1x1
 exits 0 'no lights' "$peel" compare chain.gltf --size 33x17 --lights 0
 exits 0 'all opaque' "$peel" compare chain.gltf --size 33x17 --opacity 1

@@ -11,12 +11,16 @@ typedef struct Bits {
                               * differ */
     size_t buffers;          /* of the trace */
     int peels;               /* of ref */
+    int geometry_passes[2];  /* of ref and gl */
     LayerStats layers;       /* of ref */
     bool fused;              /* the driver's mode, which ref follows */
     char difference[512];    /* the first one, "" if there is none */
 } Bits;
 
-/* Renders with both and compares. The test fails where one of them does. */
+/* Renders with both and compares. The test fails where one of them does. Where lists overflow,
+ * which nodes are lost depends on threads: then the opaque buffers and the counts of nodes are
+ * compared.
+ */
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out);
 
 /* Renders twice with one renderer: the values that differ in all buffers of the trace, and 1 for

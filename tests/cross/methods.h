@@ -4,7 +4,7 @@
 #define PEEL_TESTS_METHODS_H
 
 #include "bits.h"
-#include "soup_kinds.h"
+#include "random_desc.h"
 #include "testing.h"
 
 #include "compare/store.h"
@@ -15,42 +15,14 @@ static inline void methods_ok(Result result)
     ck_assert_msg(result == RESULT_OK, "%s", result_message());
 }
 
-/* Formats, tests and shading at random; every choice of method that is a setting too. */
-static inline RenderDesc methods_random_desc(Random *random, MethodId method, SoupKind kind)
-{
-    static const PixelFormat depths[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
-    static const PixelFormat accums[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
-                                         FORMAT_RGBA8};
-    int side = soup_kind_is_exact(kind);
-    return (RenderDesc){
-        .width = side ? 64 : 97,
-        .height = side ? 64 : 61,
-        .method = method,
-        .depth = depths[random_bits(random) % 3],
-        .accum = accums[random_bits(random) % 4],
-        .gbuffer = (GBufferFormat)(random_bits(random) % 3),
-        .depth_range = (DepthRange)(random_bits(random) % 3),
-        .depth_func = (DepthFunc)(random_bits(random) % 2),
-        .peel_test = (PeelTest)(random_bits(random) % 2),
-        .cull = (CullMode)(random_bits(random) % 3),
-        .normals = (NormalMode)(random_bits(random) % 2),
-        .ggx = (GgxForm)(random_bits(random) % 2),
-        .back_light = random_bits(random) % 2,
-        .opaque_blend = (OpaqueBlend)(random_bits(random) % 2),
-        .draw_order = (DrawOrder)(random_bits(random) % 3),
-        .draw_seed = random_bits(random),
-        .sort = (SortUnit)(random_bits(random) % 2),
-        .weight = (WeightEquation)(random_bits(random) % 4),
-    };
-}
-
 /* Of one random soup; *out: what was compared. */
 static inline void methods_check_soup(uint64_t seed, MethodId method, Bits *out)
 {
     static Soup soup;
     SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
     Random random = random_seed(seed);
-    RenderDesc desc = methods_random_desc(&random, method, kind);
+    RenderDesc desc = random_desc(&random, kind);
+    desc.method = method;
     soup_make_kind(&random, kind, desc.width, desc.height, &soup);
     methods_ok(scene_validate(&soup.scene));
     bits_compare(&soup.scene, &desc, out);

@@ -126,6 +126,10 @@ static void reduce_settings(Minimiser *m)
     DEFAULTED(shading);
     DEFAULTED(bias);
     DEFAULTED(draw_order);
+    DEFAULTED(sort);
+    DEFAULTED(weight);
+    DEFAULTED(nodes_per_pixel);
+    DEFAULTED(post);
     DEFAULTED(gbuffer);
     DEFAULTED(position);
     DEFAULTED(depth_range);
@@ -237,14 +241,19 @@ void minimise_free(Minimal *minimal)
 /* Those that are seldom set. */
 static int more_options(const RenderDesc *desc, char *text, size_t size)
 {
-    char order[48] = "";
+    static const char *const weights[] = {"", " --weight 7", " --weight 8", " --weight 10"};
+    char order[48] = "", nodes[32] = "";
     if (desc->draw_order == DRAW_ORDER_SHUFFLE)
         snprintf(order, sizeof order, " --draw-order shuffle=%llu",
                  (unsigned long long)desc->draw_seed);
-    return snprintf(text, size, " --method %s%s%s%s --bias %.9g", method_info(desc->method)->name,
+    if (desc->nodes_per_pixel > 0)
+        snprintf(nodes, sizeof nodes, " --nodes-per-pixel %d", desc->nodes_per_pixel);
+    return snprintf(text, size, " --method %s%s%s%s%s%s%s%s --bias %.9g",
+                    method_info(desc->method)->name,
                     desc->shading == SHADING_PHONG ? " --shading phong" : "",
                     desc->draw_order == DRAW_ORDER_REVERSE ? " --draw-order reverse" : "", order,
-                    (double)desc->bias);
+                    desc->sort == SORT_TRIANGLES ? " --sort triangles" : "", weights[desc->weight],
+                    nodes, desc->post == POST_EDGES ? " --post edges" : "", (double)desc->bias);
 }
 
 void minimise_options(const RenderDesc *desc, char *text, size_t size)

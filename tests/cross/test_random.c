@@ -1,14 +1,15 @@
-/* ref/pipeline against OpenGL on random adversarial scenes of every kind, every buffer of the trace
- * bit for bit.
+/* ref/pipeline against OpenGL on random adversarial scenes of every kind, by every method with
+ * settings of every kind, every buffer of the trace bit for bit.
  *
  * PEEL_TEST_SEED=N runs the one case that a failure names; PEEL_TEST_COUNT=N that many, from there
  * or from 1. A case that fails is reduced to a few triangles and written, as random-N.gltf in the
  * working directory, with the command that shows it. */
 #include "bits.h"
 #include "minimise.h"
-#include "soup_kinds.h"
+#include "random_desc.h"
 #include "testing.h"
 
+#include "frame/method.h"
 #include "gl/gl_renderer.h"
 #include "scene/gltf.h"
 
@@ -17,6 +18,7 @@
 
 typedef struct Totals {
     uint64_t scenes, pixels, fragments, values, mismatches;
+    uint64_t lost; /* nodes that had no room in a list */
 } Totals;
 
 static void ok(Result result)
@@ -30,74 +32,29 @@ static uint64_t environment(const char *name, uint64_t otherwise)
     return text ? strtoull(text, NULL, 0) : otherwise;
 }
 
-/* ---- settings ------------------------------------------------------------------------------- */
-
-static void random_formats(Random *random, RenderDesc *desc)
-{
-    static const PixelFormat depths[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
-    static const PixelFormat accums[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
-                                         FORMAT_RGBA8};
-    desc->depth = depths[random_bits(random) % 3];
-    desc->accum = accums[random_bits(random) % 4];
-    desc->gbuffer = (GBufferFormat)(random_bits(random) % 3);
-    desc->position = (PositionSource)(random_bits(random) % 2);
-    desc->depth_range = (DepthRange)(random_bits(random) % 3);
-    desc->depth_func = (DepthFunc)(random_bits(random) % 2);
-    desc->peel_test = (PeelTest)(random_bits(random) % 2);
-    desc->cull = (CullMode)(random_bits(random) % 3);
-    desc->normals = (NormalMode)(random_bits(random) % 2);
-    desc->ggx = (GgxForm)(random_bits(random) % 2);
-    desc->back_light = random_bits(random) % 2;
-    desc->opaque_blend = (OpaqueBlend)(random_bits(random) % 2);
-    desc->method = random_bits(random) % 4 ? METHOD_PEEL : METHOD_FORWARD;
-    desc->shading = random_bits(random) % 8 ? SHADING_GGX : SHADING_PHONG;
-    desc->bias =
-        random_bits(random) % 8 ? 0.0f : (float)ldexp(1.0, -(int)(random_bits(random) % 24));
-    desc->draw_order = (DrawOrder)(random_bits(random) % 3);
-    desc->draw_seed = random_bits(random) >> 1;
-}
-
-static RenderDesc random_desc(Random *random, SoupKind kind)
-{
-    static const int sizes[][2] = {{1, 1},    {33, 17},  {97, 61},  {130, 70}, {65, 64},
-                                   {128, 96}, {255, 31}, {31, 200}, {160, 120}};
-    static const int exact[][2] = {{64, 64}, {128, 64}, {32, 128}, {256, 64}, {128, 128}};
-    static const int passes[] = {0, 0, 1, 2, 5};
-    const int *size =
-        soup_kind_is_exact(kind) ? exact[random_bits(random) % 5] : sizes[random_bits(random) % 9];
-    RenderDesc desc = {
-        .width = size[0], .height = size[1], .passes = passes[random_bits(random) % 5]};
-    uint64_t profile = random_bits(random) % 4;
-    if (profile == 1)
-        render_desc_seed_profile(&desc);
-    if (profile >= 2)
-        random_formats(random, &desc);
-    return desc;
-}
-
 /* ---- one comparison ------------------------------------------------------------------------- */
 
 static char difference[512]; /* what the latest comparison found first */
 
-/* Renders with both. Returns the mismatches, which are added to totals with the rest, and sets
- * difference to the first. */
-static uint64_t compare(const Scene *scene, const RenderDesc *desc, Totals *totals)
+/* Renders with both, and sets difference to the first mismatch. */
+static void compare(const Scene *scene, const RenderDesc *desc, Totals *out)
 {
     Bits bits;
     bits_compare(scene, desc, &bits);
-    totals->scenes++;
-    totals->pixels += bits.pixels;
-    totals->values += bits.values;
-    totals->fragments += bits.layers.fragments;
-    totals->mismatches += bits.differing;
+    *out = (Totals){.scenes = 1,
+                    .pixels = bits.pixels,
+                    .fragments = bits.layers.fragments,
+                    .values = bits.values,
+                    .mismatches = bits.differing,
+                    .lost = bits.layers.lost_to_overflow};
     memcpy(difference, bits.difference, sizeof difference);
-    return bits.differing;
 }
 
 static bool differs(const Scene *scene, const RenderDesc *desc)
 {
-    Totals totals = {0};
-    return compare(scene, desc, &totals) > 0;
+    Totals totals;
+    compare(scene, desc, &totals);
+    return totals.mismatches > 0;
 }
 
 /* ---- a failure ------------------------------------------------------------------------------ */
@@ -114,7 +71,7 @@ static bool shows(const char *path, const RenderDesc *desc)
 
 static void report(uint64_t seed, SoupKind kind, const Scene *scene, const RenderDesc *desc)
 {
-    char path[64], folder[1024] = "", options[512];
+    char path[64], folder[1024] = "", options[640];
     bool fused;
     Minimal minimal;
     printf("random: seed %llu, %s: %s\nrandom: PEEL_TEST_SEED=%llu runs this case; reducing it\n",
@@ -142,15 +99,32 @@ static void report(uint64_t seed, SoupKind kind, const Scene *scene, const Rende
 
 /* ---- all scenes ----------------------------------------------------------------------------- */
 
-static void run_case(uint64_t seed, Totals kinds[SOUP_KINDS])
+static Totals kinds[SOUP_KINDS], methods[METHOD_COUNT];
+static uint64_t first_seed, wanted;
+
+static void add(Totals *sum, const Totals *totals)
+{
+    sum->scenes += totals->scenes;
+    sum->pixels += totals->pixels;
+    sum->fragments += totals->fragments;
+    sum->values += totals->values;
+    sum->mismatches += totals->mismatches;
+    sum->lost += totals->lost;
+}
+
+static void run_case(uint64_t seed)
 {
     static Soup soup;
     SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
     Random random = random_seed(seed);
     RenderDesc desc = random_desc(&random, kind);
+    Totals totals;
     soup_make_kind(&random, kind, desc.width, desc.height, &soup);
     ok(scene_validate(&soup.scene));
-    if (compare(&soup.scene, &desc, &kinds[kind]) > 0)
+    compare(&soup.scene, &desc, &totals);
+    add(&kinds[kind], &totals);
+    add(&methods[desc.method], &totals);
+    if (totals.mismatches > 0)
         report(seed, kind, &soup.scene, &desc);
 }
 
@@ -161,28 +135,23 @@ static void print_row(const char *name, const Totals *totals)
            (unsigned long long)totals->values, (unsigned long long)totals->mismatches);
 }
 
-static void print_totals(const Totals kinds[SOUP_KINDS])
+static void print_totals(void)
 {
     Totals all = {0};
     printf("%-16s %8s %14s %14s %15s %11s\n", "kind", "scenes", "pixels", "fragments", "values",
            "mismatches");
     for (int kind = 0; kind < SOUP_KINDS; kind++) {
         print_row(soup_kind_name((SoupKind)kind), &kinds[kind]);
-        all.scenes += kinds[kind].scenes;
-        all.pixels += kinds[kind].pixels;
-        all.fragments += kinds[kind].fragments;
-        all.values += kinds[kind].values;
-        all.mismatches += kinds[kind].mismatches;
+        add(&all, &kinds[kind]);
     }
+    for (int method = 0; method < METHOD_COUNT; method++)
+        print_row(method_info((MethodId)method)->name, &methods[method]);
     print_row("all", &all);
     printf("pixels compared: %llu, values: %llu, mismatches: %llu\n",
            (unsigned long long)all.pixels, (unsigned long long)all.values,
            (unsigned long long)all.mismatches);
     fflush(stdout);
 }
-
-static Totals totals[SOUP_KINDS];
-static uint64_t first_seed, wanted;
 
 /* Cases of one test: few enough for check's clock. */
 enum {
@@ -193,16 +162,23 @@ START_TEST(test_scenes)
 {
     uint64_t from = (uint64_t)_i * CHUNK;
     for (uint64_t i = from; i < from + CHUNK && i < wanted; i++)
-        run_case(first_seed + i, totals);
+        run_case(first_seed + i);
 }
 END_TEST
 
 START_TEST(test_totals)
 {
-    print_totals(totals);
-    for (int kind = 0; kind < SOUP_KINDS && wanted >= 240; kind++)
-        ck_assert_msg(totals[kind].fragments > 0, "%s: no transparent fragment in %llu scenes",
-                      soup_kind_name((SoupKind)kind), (unsigned long long)totals[kind].scenes);
+    print_totals();
+    if (wanted < 240)
+        return;
+    for (int kind = 0; kind < SOUP_KINDS; kind++)
+        ck_assert_msg(kinds[kind].fragments > 0, "%s: no transparent fragment in %llu scenes",
+                      soup_kind_name((SoupKind)kind), (unsigned long long)kinds[kind].scenes);
+    for (int method = 0; method < METHOD_COUNT; method++)
+        ck_assert_msg(methods[method].fragments > 0, "%s: no transparent fragment in %llu scenes",
+                      method_info((MethodId)method)->name,
+                      (unsigned long long)methods[method].scenes);
+    ck_assert_uint_gt(methods[METHOD_LINKED_LIST].lost, 0);
 }
 END_TEST
 
@@ -211,6 +187,7 @@ int main(void)
     uint64_t only = environment("PEEL_TEST_SEED", 0);
     first_seed = only ? only : 1;
     wanted = environment("PEEL_TEST_COUNT", only ? 1 : 240);
+    result_warnings_enable(false); /* lists without room */
     Suite *suite = suite_create("random scenes");
     TCase *tcase = tcase_create("bits");
     tcase_set_timeout(tcase, 0); /* CTest's */

@@ -61,6 +61,10 @@ static const Setting settings[] = {
     {"depth-range reversed", false, {.depth_range = DEPTH_RANGE_REVERSED}},
     {"peel-test raw", false, {.peel_test = PEEL_TEST_RAW}},
     {"passes 2", false, {.passes = 2}},
+    {"bias", false, {.bias = 0x1p-10f}},
+    {"bias, d24, reversed",
+     false,
+     {.bias = 0x1p-10f, .depth = FORMAT_D24, .depth_range = DEPTH_RANGE_REVERSED}},
     {"profile seed", true, {0}},
 };
 

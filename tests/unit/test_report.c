@@ -4,20 +4,11 @@
 #include "report/summary.h"
 #include "report/table.h"
 
+#include "page_checks.h"
 #include "sample_report.h"
 
 #include <jansson.h>
 #include <math.h>
-
-static void assert_contains(const char *text, const char *part)
-{
-    ck_assert_msg(strstr(text, part) != NULL, "no \"%s\" in:\n%s", part, text);
-}
-
-static void assert_lacks(const char *text, const char *part)
-{
-    ck_assert_msg(strstr(text, part) == NULL, "unexpected \"%s\" in:\n%s", part, text);
-}
 
 static void print_table(char *text, size_t size)
 {
@@ -90,6 +81,77 @@ START_TEST(test_numbers)
 }
 END_TEST
 
+/* What only some methods have. */
+START_TEST(test_lines_of_methods)
+{
+    static char text[65536];
+    Frame *ref = &report.frames[RENDERER_REF];
+    LayerStats *layers = &report.structure.layers;
+    print_table(text, sizeof text);
+    assert_lacks(text, "nodes x");
+    assert_lacks(text, "Sums left");
+    ref->nodes = 2097152;
+    ref->node_bytes = 24;
+    layers->overflowed = 1234;
+    report.desc.accum = FORMAT_RGBA16F;
+    print_table(text, sizeof text);
+    assert_contains(text, "\nThe lists need 2,097,152 nodes x 24 bytes = 48.0 MiB.\n");
+    assert_contains(text, "\nSums left the range of their format (rgba16f) in 1,234 pixels.\n");
+    layers->lost_to_overflow = 5678;
+    print_table(text, sizeof text);
+    assert_contains(text, "= 48.0 MiB; there was no room for 5,678 of them.\n");
+    report.desc.method = METHOD_LINKED_LIST;
+    report.pairs[1].unaffected.p99_rel = 2e-4;
+    print_table(text, sizeof text);
+    assert_contains(text, "Peels: 16 layers, one pass");
+    assert_contains(text, "G-buffer: compact");
+    assert_contains(text, " The compact G-buffer stores in 8 and 16 bits,");
+    report.desc.method = METHOD_WEIGHTED_BLENDED;
+    print_table(text, sizeof text);
+    assert_contains(text, "Peels: none, one pass");
+    assert_contains(text, "Weight: equation 9");
+    assert_contains(text, "weighted-blended approximates, so it is not judged");
+    assert_contains(text, " Not finite, which is a fault: 1 pixels.");
+    report.pairs[1].final.nonfinite = 0;
+    print_table(text, sizeof text);
+    assert_lacks(text, "a fault");
+}
+END_TEST
+
+START_TEST(test_settings_that_few_set)
+{
+    static const char *const expected[][2] = {{"Depth", "d32f, less, reversed"},
+                                              {"Shading", "Phong, one directional light"},
+                                              {"Bias", "0.125"},
+                                              {"Draw order", "shuffled, seed 7"},
+                                              {"Painter sorts", "triangles"},
+                                              {"Weight", "equation 10"},
+                                              {"Nodes per pixel", "4"},
+                                              {"Post-process", "edges, of linked-list"}};
+    SummarySetting settings[SUMMARY_SETTINGS];
+    int plain = summary_settings(&report, settings);
+    report.desc.depth_range = DEPTH_RANGE_REVERSED;
+    report.desc.shading = SHADING_PHONG;
+    report.desc.bias = 0.125f;
+    report.desc.draw_order = DRAW_ORDER_SHUFFLE;
+    report.desc.draw_seed = 7;
+    report.desc.sort = SORT_TRIANGLES;
+    report.desc.weight = WEIGHT_10;
+    report.desc.nodes_per_pixel = 4;
+    report.desc.post = POST_EDGES;
+    int count = summary_settings(&report, settings), found = 0;
+    ck_assert_int_eq(count, plain + 6);
+    ck_assert_int_le(count, SUMMARY_SETTINGS);
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
+        for (int k = 0; k < count; k++)
+            if (strcmp(settings[k].name, expected[i][0]) == 0) {
+                ck_assert_str_eq(settings[k].value, expected[i][1]);
+                found++;
+            }
+    ck_assert_int_eq(found, 8);
+}
+END_TEST
+
 static json_t *load(const char *path)
 {
     json_error_t error;
@@ -127,6 +189,7 @@ START_TEST(test_json)
         {"scene", "\"data/scenes/<gradients>'s.gltf\""},
         {"size", "[320,180]"},
         {"method", "\"peel\""},
+        {"exact", "true"},
         {"passes", "16"},
         {"profile", "\"default\""},
         {"fma", "true"},
@@ -154,8 +217,9 @@ START_TEST(test_json)
          "{\"pixels\":57000,\"occupied\":41000,\"max_abs\":1.25e-6,\"max_rel\":1.25e-6,"
          "\"p99_rel\":3.5e-7}"},
         {"layers", "{\"max\":16,\"fragments\":345678,\"lost_to_ties\":9,"
-                   "\"lost_to_pass_limit\":0,\"order_inversions\":3,\"coverage_differs\":77,"
-                   "\"opaque_flips\":0,\"repeated\":0,\"overflowed\":0,\"set_differs\":0,"
+                   "\"lost_to_pass_limit\":0,\"lost_to_overflow\":0,\"order_inversions\":3,"
+                   "\"coverage_differs\":77,\"opaque_flips\":0,\"repeated\":0,\"overflowed\":0,"
+                   "\"set_differs\":0,"
                    "\"exact_comparisons\":21,\"ties\":7,\"undecided\":0}"},
         {"residual", "{\"max\":0.0,\"pixels\":0}"},
     };
@@ -168,6 +232,44 @@ START_TEST(test_json)
     const json_t *pair = json_array_get(json_object_get(root, "pairs"), 0);
     ck_assert_uint_eq(json_array_size(json_object_get(pair, "buffers")), BUFFERS);
     ck_assert_ptr_null(json_object_get(pair, "unaffected"));
+    json_decref(root);
+}
+END_TEST
+
+START_TEST(test_json_of_methods)
+{
+    static const char *const cases[][2] = {
+        {"agree", "false"},
+        {"methods/0/method", "\"peel\""},
+        {"methods/0/exact", "true"},
+        {"methods/1/method", "\"linked-list\""},
+        {"methods/1/exact", "true"},
+        {"methods/1/renderers/ref/nodes", "123456"},
+        {"methods/1/renderers/ref/node_bytes", "20"},
+        {"methods/1/renderers/gl/nodes", "123456"},
+        {"methods/1/layers/lost_to_overflow", "77"},
+        {"methods/2/method", "\"weighted-sum\""},
+        {"methods/2/exact", "false"},
+        {"methods/2/layers/overflowed", "88"},
+    };
+    const char *path = scratch_path("all.json");
+    Threeway reports[] = {report, report, report};
+    reports[1].desc.method = METHOD_LINKED_LIST;
+    for (int i = RENDERER_REF; i <= RENDERER_GL; i++) {
+        reports[1].frames[i].nodes = 123456;
+        reports[1].frames[i].node_bytes = 20;
+    }
+    reports[1].structure.layers.lost_to_overflow = 77;
+    reports[1].agree = false;
+    reports[2].desc.method = METHOD_WEIGHTED_SUM;
+    reports[2].structure.layers.overflowed = 88;
+    ck_assert_int_eq(report_json_write_all(reports, 3, path), RESULT_OK);
+    json_t *root = load(path);
+    assert_json_values(root, cases, sizeof cases / sizeof cases[0]);
+    const json_t *peel = json_array_get(json_object_get(root, "methods"), 0);
+    const json_t *ref = json_object_get(json_object_get(peel, "renderers"), "ref");
+    ck_assert_ptr_nonnull(ref);
+    ck_assert_ptr_null(json_object_get(ref, "nodes"));
     json_decref(root);
 }
 END_TEST
@@ -256,64 +358,10 @@ START_TEST(test_html)
 }
 END_TEST
 
-/* The value of an attribute inside a tag's text, "" if it has none. */
-static void attribute(const char *tag, const char *name, char *out, size_t size)
-{
-    char key[16];
-    snprintf(key, sizeof key, " %s=\"", name);
-    const char *value = strstr(tag, key);
-    out[0] = 0;
-    if (value)
-        snprintf(out, size, "%.*s", (int)strcspn(value + strlen(key), "\""), value + strlen(key));
-}
-
-static void assert_file_exists(const char *name)
-{
-    ck_assert_msg(!name[0] || access(scratch_path(name), R_OK) == 0, "no file %s", name);
-}
-
-/* One start tag: the files that it names exist, pictures have a text. */
-static bool check_tag(const char *tag, const char *name)
-{
-    char value[256];
-    attribute(tag, "src", value, sizeof value);
-    assert_file_exists(value);
-    attribute(tag, "href", value, sizeof value);
-    assert_file_exists(value);
-    if (strcmp(name, "img") == 0) {
-        attribute(tag, "alt", value, sizeof value);
-        ck_assert_msg(value[0] != 0, "no alternative text: %s", tag);
-    }
-    static const char *const empty[] = {"!doctype", "meta", "link", "img", "br"};
-    for (size_t i = 0; i < sizeof empty / sizeof empty[0]; i++)
-        if (strcmp(name, empty[i]) == 0)
-            return false;
-    return true;
-}
-
-/* Every element is closed in its order. */
 START_TEST(test_html_is_whole)
 {
-    static char text[1 << 20], open[64][16];
-    int depth = 0, images = 0;
     ck_assert_int_eq(report_html_write(&report, "peel", scratch_directory), RESULT_OK);
-    scratch_read(scratch_path("index.html"), text, sizeof text);
-    for (char *tag = text; (tag = strchr(tag, '<')); tag++) {
-        char name[16], *end = strchr(tag, '>');
-        ck_assert_ptr_nonnull(end);
-        *end = 0;
-        bool closes = tag[1] == '/';
-        snprintf(name, sizeof name, "%.*s", (int)strcspn(tag + 1 + closes, " "), tag + 1 + closes);
-        if (closes)
-            ck_assert_msg(depth > 0 && strcmp(open[--depth], name) == 0, "</%s> at depth %d", name,
-                          depth);
-        else if (check_tag(tag, name))
-            strcpy(open[depth++], name);
-        images += strcmp(name, "img") == 0;
-        *end = '>';
-    }
-    ck_assert_int_eq(depth, 0);
-    ck_assert_int_eq(images, 3 + 3 + 1 + 2 * PEELS);
+    ck_assert_int_eq(check_page("."), 3 + 3 + 1 + 2 * PEELS);
 }
 END_TEST
 
@@ -388,8 +436,11 @@ int main(void)
     tcase_add_checked_fixture(tests, make_report, free_report);
     tcase_add_test(tests, test_rows_fold);
     tcase_add_test(tests, test_table);
+    tcase_add_test(tests, test_lines_of_methods);
+    tcase_add_test(tests, test_settings_that_few_set);
     tcase_add_test(tests, test_numbers);
     tcase_add_test(tests, test_json);
+    tcase_add_test(tests, test_json_of_methods);
     tcase_add_test(tests, test_json_of_an_odd_path);
     tcase_add_test(tests, test_json_without_memory);
     tcase_add_test(tests, test_html);
