@@ -30,7 +30,7 @@ typedef struct Frame {
     Image final;   /* FORMAT_RGBA32F: linear RGB over the background, A = coverage (1 − T) */
     Image display; /* FORMAT_RGBA8: display-transformed, A = 255 */
     int peels;     /* geometry passes over the transparent list that yielded a fragment */
-    int geometry_passes;       /* over the transparent list; the one over the opaque list is extra */
+    int geometry_passes; /* over the transparent list; the one over the opaque list is extra */
     uint64_t fragments_shaded; /* lit and blended: opaque and transparent; ref only */
     LayerStats layers;
     double residual_max;      /* greatest transmittance in front of fragments the limit lost */
