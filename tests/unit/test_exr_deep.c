@@ -4,12 +4,13 @@
 
 #include "base/file.h"
 #include "base/random.h"
+#include "foreign_deep.h"
 #include "image/exr.h"
+#include "image/exr_deep_core.h"
 #include "scratch.h"
 #include "testing.h"
 
 #include <math.h>
-#include <openexr.h>
 #include <stdio.h>
 
 enum {
@@ -126,81 +127,6 @@ START_TEST(test_other_reader)
 END_TEST
 
 /* ---- files of others ------------------------------------------------------------------------ */
-
-/* One row of pixels with any channels, not compressed or (only the values) by run lengths; values:
- * channel by channel, samples in order, as 4 bytes (2 for half). */
-typedef struct Foreign {
-    const char *names[8]; /* in order of names; NULL ends them */
-    exr_pixel_type_t types[8];
-    int width;
-    uint32_t totals[4]; /* running, one per pixel */
-    const void *values;
-    size_t bytes;
-    bool runs;
-} Foreign;
-
-/* As the file format has it: even bytes, then odd ones, as differences, then runs of at least 3 and
- * what lies between them. Returns the bytes of out. */
-static size_t pack_runs(const uint8_t *in, size_t size, uint8_t *out)
-{
-    uint8_t mixed[256];
-    size_t packed = 0, literal = 0;
-    for (size_t i = 0; i < size; i++)
-        mixed[i % 2 ? (size + 1) / 2 + i / 2 : i / 2] = in[i];
-    for (size_t i = size - 1; i > 0; i--)
-        mixed[i] = (uint8_t)(mixed[i] - mixed[i - 1] + 128);
-    for (size_t at = 0; at < size;) {
-        size_t run = 1;
-        while (at + run < size && run < 128 && mixed[at + run] == mixed[at])
-            run++;
-        if (run >= 3) {
-            out[packed++] = (uint8_t)(run - 1);
-            out[packed++] = mixed[at];
-            literal = 0;
-            at += run;
-        } else {
-            if (literal == 0)
-                literal = ++packed;
-            out[literal - 1] = (uint8_t) - (int)(packed - literal + 1);
-            out[packed++] = mixed[at++];
-        }
-    }
-    return packed;
-}
-
-static void write_foreign(const Foreign *foreign, const char *path)
-{
-    exr_context_t context;
-    int index, failed = 0;
-    uint8_t packed[512];
-    const void *data = foreign->runs ? packed : foreign->values;
-    size_t bytes =
-        foreign->runs ? pack_runs(foreign->values, foreign->bytes, packed) : foreign->bytes;
-    exr_attr_box2i_t window = {{.x = 5, .y = -3}, {.x = 4 + foreign->width, .y = -3}};
-    failed |= exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, NULL);
-    failed |= exr_add_part(context, "beauty", EXR_STORAGE_DEEP_SCANLINE, &index);
-    failed |= exr_initialize_required_attr_simple(
-        context, 0, 20, 10, foreign->runs ? EXR_COMPRESSION_RLE : EXR_COMPRESSION_NONE);
-    failed |= exr_set_data_window(context, 0, &window);
-    for (int i = 0; foreign->names[i]; i++)
-        failed |= exr_add_channel(context, 0, foreign->names[i], foreign->types[i],
-                                  EXR_PERCEPTUALLY_LINEAR, 1, 1);
-    failed |= exr_write_header(context);
-    failed |= exr_write_deep_scanline_chunk(context, 0, -3, data, bytes, foreign->bytes,
-                                            foreign->totals, 4 * (uint64_t)foreign->width);
-    failed |= exr_finish(&context);
-    ck_assert_int_eq(failed, 0);
-}
-
-#define RGBAZ                                                                                      \
-    {                                                                                              \
-        "A", "B", "G", "R", "Z"                                                                    \
-    }
-#define FLOATS                                                                                     \
-    {                                                                                              \
-        EXR_PIXEL_FLOAT, EXR_PIXEL_FLOAT, EXR_PIXEL_FLOAT, EXR_PIXEL_FLOAT, EXR_PIXEL_FLOAT,       \
-            EXR_PIXEL_FLOAT                                                                        \
-    }
 
 START_TEST(test_unsorted)
 {
@@ -357,6 +283,43 @@ START_TEST(test_oiiotool_files)
 }
 END_TEST
 
+/* Run lengths that end early, ask for more than there is or give more than there is room for; 4
+ * bytes are expected. Buffers have exactly their sizes, for the sanitizer, and canaries. */
+START_TEST(test_broken_runs)
+{
+    static const struct {
+        uint8_t bytes[8];
+        size_t size;
+        bool good;
+    } cases[] = {
+        {{3, 7}, 2, true},
+        {{0xfe, 1, 2, 1, 9}, 5, true},
+        {{2, 7}, 2, false},
+        {{4, 7}, 2, false},
+        {{127, 7}, 2, false},
+        {{3}, 1, false},
+        {{0xfc, 1, 2, 3}, 3, false},
+        {{0xfc, 1}, 2, false},
+        {{0xff, 1, 0x80}, 3, false},
+        {{0xff}, 1, false},
+        {{0xfb, 1, 2, 3, 4, 5}, 6, false},
+        {{3, 7, 0, 7}, 3, false},
+        {{0}, 0, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        uint8_t *in = malloc(cases[i].size), *out = malloc(5), *scratch = malloc(5);
+        memcpy(in, cases[i].bytes, cases[i].size);
+        out[4] = scratch[4] = 0xa5;
+        bool good = exr_deep_unpack(EXR_COMPRESSION_RLE, in, cases[i].size, scratch, out, 4);
+        ck_assert_msg(good == cases[i].good, "case %zu: %d", i, good);
+        ck_assert_msg(out[4] == 0xa5 && scratch[4] == 0xa5, "case %zu wrote too far", i);
+        free(in);
+        free(out);
+        free(scratch);
+    }
+}
+END_TEST
+
 /* ---- broken files --------------------------------------------------------------------------- */
 
 START_TEST(test_truncated)
@@ -468,6 +431,7 @@ int main(void)
     tcase_add_test(tests, test_half_and_more_channels);
     tcase_add_test(tests, test_foreign_refused);
     tcase_add_test(tests, test_oiiotool_files);
+    tcase_add_test(tests, test_broken_runs);
     tcase_add_test(tests, test_truncated);
     tcase_add_loop_test(tests, test_mutations, 0, 3);
     tcase_add_test(tests, test_writer_failures);
