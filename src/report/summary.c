@@ -211,6 +211,11 @@ void summary_pair_exact(const Threeway *report, char out[SUMMARY_LINE])
     else
         snprintf(out, SUMMARY_LINE, "ref and gl agree bit for bit: %s values in %zu buffers.",
                  values, totals.buffers);
+    size_t length = strlen(out);
+    if (report->structure.layers.lost_to_overflow)
+        snprintf(out + length, SUMMARY_LINE - length,
+                 " Lists had too little room; in gl it depends on threads what is lost, so no "
+                 "equality is claimed.");
 }
 
 void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])

@@ -275,6 +275,26 @@ START_TEST(test_weights)
 }
 END_TEST
 
+/* In sums of 32 bits, where the last bit of a weight shows. */
+START_TEST(test_weight_bits)
+{
+    static Soup soup;
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        RenderDesc desc = {.width = 97,
+                           .height = 61,
+                           .method = METHOD_WEIGHTED_BLENDED,
+                           .weight = (WeightEquation)_i};
+        Random random = random_seed(seed);
+        Bits bits;
+        soup_make_kind(&random, SOUP_PERSPECTIVE, desc.width, desc.height, &soup);
+        bits_compare(&soup.scene, &desc, &bits);
+        ck_assert_msg(bits.differing == 0, "seed %llu: %s", (unsigned long long)seed,
+                      bits.difference);
+        ck_assert_uint_gt(bits.layers.fragments, 0);
+    }
+}
+END_TEST
+
 /* ---- halves --------------------------------------------------------------------------------- */
 
 START_TEST(test_overflow)
@@ -309,6 +329,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_one_layer, 0, 3);
     tcase_add_test(tcase, test_equal_layers);
     tcase_add_loop_test(tcase, test_weights, WEIGHT_9, WEIGHT_10 + 1);
+    tcase_add_loop_test(tcase, test_weight_bits, WEIGHT_9, WEIGHT_10 + 1);
     tcase_add_loop_test(tcase, test_overflow, 0, 3);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
