@@ -27,7 +27,7 @@ typedef struct Raster {
     uint32_t triangle;
     const Corner *corners[3];
     Coverage coverage;
-    Bound bound; /* over what of the tile it may cover */
+    DepthBound bound; /* over what of the tile it may cover */
 } Raster;
 
 /* ---- order ---------------------------------------------------------------------------------- */
@@ -226,7 +226,7 @@ static Result raster_triangle(Raster *raster)
     y_high = coverage->y_high < y_high ? coverage->y_high : y_high;
     if (x_low > x_high || y_low > y_high || coverage_misses(coverage, x_low, y_low, x_high, y_high))
         return RESULT_OK;
-    bound_setup(vertices, (BoundRect){x_low, x_high, y_low, y_high}, &raster->bound);
+    depth_bound_setup(vertices, (BoundRect){x_low, x_high, y_low, y_high}, &raster->bound);
     if (!(raster->bound.snapping_error < SNAPPING_ERROR_MAX))
         coverage->slack = SLACK_ALL;
     Result result = RESULT_OK;

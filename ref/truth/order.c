@@ -128,12 +128,12 @@ static float round_up(double error)
     return error < 1.0 ? (float)error * (1.0f + 0x1p-20f) + 0x1p-100f : 1.0f;
 }
 
-void order_set_depth(Order *order, const Bound *bound, const Corner *const corners[3],
+void order_set_depth(Order *order, const DepthBound *bound, const Corner *const corners[3],
                      const ExactPoint *point, Fragment *fragment)
 {
     int x, y;
     find_pixel(order, fragment, &x, &y);
-    Verdict verdict = bound_has_depth(bound, point);
+    Verdict verdict = depth_bound_has_depth(bound, point);
     if (verdict == VERDICT_UNSURE) {
         const Plane *plane = find_plane(order, fragment->triangle);
         verdict =
@@ -146,17 +146,17 @@ void order_set_depth(Order *order, const Bound *bound, const Corner *const corne
         fragment->depth = exact_nearby_depth(corners, x, y);
         return;
     }
-    double error = bound_depth(bound, point);
+    double error = depth_bound_at(bound, point);
     fragment->depth = point->depth;
     if (point->plane < -error || point->plane - 1.0 > error)
         return; /* certainly clamped: 0 or 1 exactly */
     fragment->error = round_up(error);
 }
 
-bool order_inside(Order *order, const Bound *bound, const ExactPoint *point, uint32_t triangle,
+bool order_inside(Order *order, const DepthBound *bound, const ExactPoint *point, uint32_t triangle,
                   int x, int y, bool *clockwise)
 {
-    Verdict verdict = bound_inside(bound, point);
+    Verdict verdict = depth_bound_inside(bound, point);
     if (verdict != VERDICT_UNSURE) {
         *clockwise = bound->clockwise;
         return verdict == VERDICT_YES;

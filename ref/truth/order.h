@@ -7,7 +7,7 @@
 #ifndef PEEL_REF_TRUTH_ORDER_H
 #define PEEL_REF_TRUTH_ORDER_H
 
-#include "ref/truth/bound.h"
+#include "ref/truth/depth_bound.h"
 #include "ref/truth/plane.h"
 
 #define FRAGMENT_NO_TRIANGLE UINT32_MAX
@@ -58,11 +58,11 @@ int order_compare_all(Order *order, const Fragment *a, const Fragment *b, DepthF
 
 /* Gives fragment its depth, error and is_fixed; its triangle and pixel are set, point is exact_at's
  * there. */
-void order_set_depth(Order *order, const Bound *bound, const Corner *const corners[3],
+void order_set_depth(Order *order, const DepthBound *bound, const Corner *const corners[3],
                      const ExactPoint *point, Fragment *fragment);
 
 /* ExactPoint.inside, exactly; then *clockwise is exact too. (x, y): y up. */
-bool order_inside(Order *order, const Bound *bound, const ExactPoint *point, uint32_t triangle,
+bool order_inside(Order *order, const DepthBound *bound, const ExactPoint *point, uint32_t triangle,
                   int x, int y, bool *clockwise);
 
 void order_free(Order *order); /* the numbers, not the struct */

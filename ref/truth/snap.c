@@ -1,6 +1,6 @@
 #include "ref/truth/snap.h"
 
-#include "ref/truth/bound.h"
+#include "ref/truth/depth_bound.h"
 #include "ref/truth/plane.h"
 
 #include <math.h>
@@ -60,7 +60,7 @@ Snap snap_vertex(const View *view, const Draw *draw, const float *position, cons
     *exact = false;
     double x = (corner->x / corner->w - 0.5) * SUBPIXELS;
     double y = (corner->y / corner->w - 0.5) * SUBPIXELS;
-    double off = bound_window(corner, error) * SUBPIXELS;
+    double off = depth_bound_window(corner, error) * SUBPIXELS;
     /* Not NaN, not infinite, and in front of the eye for certain. */
     if (!(fabs(x) < SUBPIXEL_MAX && fabs(y) < SUBPIXEL_MAX && off < SUBPIXEL_MAX))
         return snap;

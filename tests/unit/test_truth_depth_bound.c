@@ -173,8 +173,8 @@ static Fragment check_fragment(Case *c, uint32_t triangle, int x, int y, Answer 
     const Corner *corners[3] = {&vertices[0]->corner, &vertices[1]->corner, &vertices[2]->corner};
     int reach = (int)(triangle % 3) * 8; /* the rectangle need not be tight */
     BoundRect rect = {x > reach ? x - reach : 0, x, y, y + reach < HEIGHT ? y + reach : y};
-    Bound bound;
-    bound_setup(vertices, rect, &bound);
+    DepthBound bound;
+    depth_bound_setup(vertices, rect, &bound);
     ExactPoint point;
     exact_at(corners, x, y, &point);
     Fragment fragment = {.triangle = triangle,
@@ -404,7 +404,7 @@ START_TEST(test_inside_on_edges)
         c->position[i] = i % 3 == 2 ? -2.0f : (float)(random_bits(&random) % 32) / 8 - 1.9375f;
     c->stage->instances[0].world = matrix_identity();
     case_build(c, (RenderDesc){.width = SIZE, .height = SIZE});
-    const Bound nothing = {.edge = {INFINITY, INFINITY, INFINITY}, .determinant = -1.0};
+    const DepthBound nothing = {.edge = {INFINITY, INFINITY, INFINITY}, .determinant = -1.0};
     int on_edge = 0;
     for (uint32_t triangle = 0; triangle < TRIANGLES; triangle++) {
         const SoupVertex *v[3];

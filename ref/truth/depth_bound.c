@@ -1,4 +1,4 @@
-#include "ref/truth/bound.h"
+#include "ref/truth/depth_bound.h"
 
 #include <math.h>
 
@@ -30,7 +30,8 @@ static double product_error(const Relative *a, const Relative *b)
     return a->size * b->error + a->error * (b->size + b->error) + 2 * ROUNDING * a->size * b->size;
 }
 
-static void bound_determinant(const SoupVertex *const vertices[3], const double edge[3], Bound *out)
+static void bound_determinant(const SoupVertex *const vertices[3], const double edge[3],
+                              DepthBound *out)
 {
     double sum = 0.0, error = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -44,7 +45,7 @@ static void bound_determinant(const SoupVertex *const vertices[3], const double 
     out->determinant = low >= DETERMINANT_MIN && isfinite(low) ? low : -1.0;
 }
 
-double bound_window(const Corner *corner, const Corner *error)
+double depth_bound_window(const Corner *corner, const Corner *error)
 {
     double low = corner->w - error->w;
     if (!(low > 0.5 * corner->w))
@@ -54,7 +55,7 @@ double bound_window(const Corner *corner, const Corner *error)
            4 * ROUNDING * (size + 1.0);
 }
 
-void bound_setup(const SoupVertex *const vertices[3], BoundRect rect, Bound *out)
+void depth_bound_setup(const SoupVertex *const vertices[3], BoundRect rect, DepthBound *out)
 {
     Relative x[3], y[3];
     out->snapping_error = 0.0;
@@ -66,7 +67,7 @@ void bound_setup(const SoupVertex *const vertices[3], BoundRect rect, Bound *out
         out->q[i] = corner->z + corner->w;
         out->q_error[i] = error->z + error->w + ROUNDING * fabs(out->q[i]) + 0x1p-1074;
         out->d_error[i] = 2 * (error->w + ROUNDING * fabs(corner->w));
-        out->snapping_error = fmax(out->snapping_error, bound_window(corner, error));
+        out->snapping_error = fmax(out->snapping_error, depth_bound_window(corner, error));
     }
     double edge[3];
     for (int i = 0; i < 3; i++) {
@@ -77,7 +78,7 @@ void bound_setup(const SoupVertex *const vertices[3], BoundRect rect, Bound *out
     bound_determinant(vertices, edge, out);
 }
 
-Verdict bound_has_depth(const Bound *bound, const ExactPoint *point)
+Verdict depth_bound_has_depth(const DepthBound *bound, const ExactPoint *point)
 {
     double sum = 0.0, error = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -90,7 +91,7 @@ Verdict bound_has_depth(const Bound *bound, const ExactPoint *point)
 }
 
 /* Whether edges are certainly not all of one sign: outside, whatever the orientation. */
-static bool edges_disagree(const Bound *bound, const ExactPoint *point)
+static bool edges_disagree(const DepthBound *bound, const ExactPoint *point)
 {
     bool positive = false, negative = false;
     for (int i = 0; i < 3; i++) {
@@ -100,11 +101,11 @@ static bool edges_disagree(const Bound *bound, const ExactPoint *point)
     return positive && negative;
 }
 
-Verdict bound_inside(const Bound *bound, const ExactPoint *point)
+Verdict depth_bound_inside(const DepthBound *bound, const ExactPoint *point)
 {
     if (edges_disagree(bound, point))
         return VERDICT_NO;
-    Verdict verdict = bound_has_depth(bound, point);
+    Verdict verdict = depth_bound_has_depth(bound, point);
     if (verdict != VERDICT_YES)
         return verdict;
     for (int i = 0; i < 3; i++) {
@@ -114,13 +115,13 @@ Verdict bound_inside(const Bound *bound, const ExactPoint *point)
         if (!(edge > bound->edge[i]))
             verdict = VERDICT_UNSURE;
     }
-    double error = bound_depth(bound, point);
+    double error = depth_bound_at(bound, point);
     if (point->plane < -error || point->plane - 1.0 > error)
         return VERDICT_NO;
     return point->plane > error && 1.0 - point->plane > error ? verdict : VERDICT_UNSURE;
 }
 
-double bound_depth(const Bound *bound, const ExactPoint *point)
+double depth_bound_at(const DepthBound *bound, const ExactPoint *point)
 {
     if (bound->determinant < 0.0)
         return INFINITY;

@@ -20,8 +20,8 @@
  * The bounds' own arithmetic only adds, multiplies and divides non-negative numbers, but for
  * |D̂| − error; EXACT_SLACK covers it. Overflow gives infinity or NaN, which bound nothing and are
  * never taken for certain. The thread must not flush denormals. */
-#ifndef PEEL_REF_TRUTH_BOUND_H
-#define PEEL_REF_TRUTH_BOUND_H
+#ifndef PEEL_REF_TRUTH_DEPTH_BOUND_H
+#define PEEL_REF_TRUTH_DEPTH_BOUND_H
 
 #include "ref/truth/soup.h"
 
@@ -32,7 +32,7 @@ typedef enum Verdict {
 } Verdict;
 
 /* For one triangle, over a rectangle of pixels. */
-typedef struct Bound {
+typedef struct DepthBound {
     double edge[3];    /* the edge functions' error */
     double q[3], w[3]; /* corners' z + w, and w */
     double q_error[3]; /* of rᵢ: this, and |d| times the next */
@@ -40,7 +40,7 @@ typedef struct Bound {
     double determinant;    /* |D| is at least this; −1 if it may be 0, or out of range */
     bool clockwise;        /* D is negative */
     double snapping_error; /* of corners' window coordinates, in pixels; infinite behind the eye */
-} Bound;
+} DepthBound;
 
 /* The rectangle's ends, inclusive, in pixels with y up; not empty, within the viewport. */
 typedef struct BoundRect {
@@ -49,20 +49,20 @@ typedef struct BoundRect {
 
 /* How much the window coordinates of a corner err, x/w and y/w, in pixels, with a few roundings on
  * top; infinity where w may not be positive. */
-double bound_window(const Corner *corner, const Corner *error);
+double depth_bound_window(const Corner *corner, const Corner *error);
 
-void bound_setup(const SoupVertex *const vertices[3], BoundRect rect, Bound *out);
+void depth_bound_setup(const SoupVertex *const vertices[3], BoundRect rect, DepthBound *out);
 
 /* point: by exact_at, at a pixel of the rectangle. */
 
 /* Whether the plane has a depth there: the triangle has an area as seen from the eye, and the point
  * lies in front of the eye. */
-Verdict bound_has_depth(const Bound *bound, const ExactPoint *point);
+Verdict depth_bound_has_depth(const DepthBound *bound, const ExactPoint *point);
 /* Whether the pixel's centre is in the triangle and in the view volume: ExactPoint.inside, were it
  * exact. */
-Verdict bound_inside(const Bound *bound, const ExactPoint *point);
+Verdict depth_bound_inside(const DepthBound *bound, const ExactPoint *point);
 /* How much point->plane errs at most; infinite or NaN where nothing is known. Means something where
  * the plane has a depth. */
-double bound_depth(const Bound *bound, const ExactPoint *point);
+double depth_bound_at(const DepthBound *bound, const ExactPoint *point);
 
 #endif
