@@ -130,10 +130,11 @@ static float select_rank(float *values, size_t count, size_t rank)
     return values[rank];
 }
 
-/* Nearest rank: the least value that at least 99 % of the values do not exceed; 0 of none. */
-static double percentile99(float *values, size_t count)
+/* Nearest rank: the least value that at least thousandths / 1000 of the values do not exceed; 0 of
+ * none. */
+static double percentile(float *values, size_t count, size_t thousandths)
 {
-    return count ? (double)select_rank(values, count, (count * 99 + 99) / 100 - 1) : 0.0;
+    return count ? (double)select_rank(values, count, (count * thousandths + 999) / 1000 - 1) : 0.0;
 }
 
 Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
@@ -160,9 +161,11 @@ Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
         relative[at] = (float)worst;
     }
     out->pixels = out->occupied + empty;
-    double occupied = percentile99(relative, out->occupied);
+    double occupied = percentile(relative, out->occupied, 990);
+    double occupied999 = percentile(relative, out->occupied, 999);
     memmove(relative + out->occupied, relative + pixels - empty, empty * sizeof *relative);
-    out->p99_rel = fmax(occupied, percentile99(relative, out->pixels));
+    out->p99_rel = fmax(occupied, percentile(relative, out->pixels, 990));
+    out->p999_rel = fmax(occupied999, percentile(relative, out->pixels, 999));
     free(relative);
     return RESULT_OK;
 }

@@ -38,6 +38,7 @@ typedef struct UnaffectedMetrics {
     /* 99th percentile of a pixel's greatest relative difference: over all these pixels, or over the
      * occupied ones, whichever is greater, so that background neither hides nor is hidden. */
     double p99_rel;
+    double p999_rel; /* the 99.9th, alike */
 } UnaffectedMetrics;
 
 /* Folds the differences of a rectangle of two buffers of one format into metrics (zeroed or from

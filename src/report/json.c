@@ -106,6 +106,7 @@ static json_t *pairs(Document *json, const Threeway *report)
             document_put(json, unaffected, "max_abs", real(pair->unaffected.max_abs));
             document_put(json, unaffected, "max_rel", real(pair->unaffected.max_rel));
             document_put(json, unaffected, "p99_rel", real(pair->unaffected.p99_rel));
+            document_put(json, unaffected, "p999_rel", real(pair->unaffected.p999_rel));
             document_put(json, one, "unaffected", unaffected);
         }
         document_append(json, array, one);
