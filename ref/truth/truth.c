@@ -2,10 +2,13 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "frame/method.h"
 #include "frame/shading.h"
+#include "ref/truth/bound.h"
 #include "ref/truth/fragments.h"
 #include "ref/truth/radiance.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,7 +70,7 @@ static void blend_fragment(const Render *render, const Fragment *fragment, int x
     double rgb[3];
     radiance_shade(render->view, &surface, rgb);
     for (int i = 0; i < 3; i++)
-        rgba[i] += rgba[3] * alpha * rgb[i];
+        rgba[i] += rgb[i] * alpha * rgba[3];
     rgba[3] *= 1.0 - alpha;
 }
 
@@ -87,6 +90,24 @@ static void composite(const Render *render, const TileFragments *tile, int pixel
     rgba[3] = 1.0 - rgba[3];
 }
 
+/* What the pipeline may differ by from the truth's rgba, the truth's own rounding to float
+ * included. */
+static void bound_pixel(const Render *render, const TileFragments *tile, int pixel, int x, int y,
+                        const double rgba[4], float out[4])
+{
+    Bounded bound[4] = {bounded_of(0.0), bounded_of(0.0), bounded_of(0.0), bounded_of(1.0)};
+    for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1]; i++)
+        bound_blend(&render->soup, render->desc, &tile->sorted[i], x, y, bound);
+    if (tile->opaque[pixel].triangle != FRAGMENTS_NO_TRIANGLE)
+        bound_blend(&render->soup, render->desc, &tile->opaque[pixel], x, y, bound);
+    bound_resolve(render->view, render->desc->accum, bound);
+    for (int i = 0; i < 4; i++) {
+        double apart = fabs(bound[i].value - rgba[i]) + BOUNDED_SINGLE * fabs(rgba[i]);
+        double most = bounded_limit((bound[i].single + apart) * BOUNDED_SLACK);
+        out[i] = most > 0.0 ? nextafterf((float)most, INFINITY) : 0.0f;
+    }
+}
+
 static void draw_tile(const Render *render, const TileFragments *tile)
 {
     for (int row = 0; row < tile->height; row++) {
@@ -95,6 +116,10 @@ static void draw_tile(const Render *render, const TileFragments *tile)
             double rgba[4];
             composite(render, tile, row * TRACE_TILE + column, x,
                       render->view->height - 1 - image_y, rgba);
+            if (render->desc->bound)
+                bound_pixel(render, tile, row * TRACE_TILE + column, x,
+                            render->view->height - 1 - image_y, rgba,
+                            image_pixel(&render->frame->bound, x, image_y));
             float *final = image_pixel(&render->frame->final, x, image_y);
             uint8_t *display = image_pixel(&render->frame->display, x, image_y);
             for (int i = 0; i < 4; i++)
@@ -212,13 +237,15 @@ static Result render_view(const Scene *scene, const RenderDesc *desc, const View
 {
     size_t limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
     size_t pixels = (size_t)view->width * (size_t)view->height;
-    size_t image_bytes =
-        pixels * (format_pixel_bytes(FORMAT_RGBA32F) + format_pixel_bytes(FORMAT_RGBA8));
+    size_t image_bytes = pixels * ((desc->bound ? 2 : 1) * format_pixel_bytes(FORMAT_RGBA32F) +
+                                   format_pixel_bytes(FORMAT_RGBA8));
     Result result = soup_check_memory(image_bytes, limit);
     if (result == RESULT_OK)
         result = image_create(view->width, view->height, FORMAT_RGBA32F, &frame->final);
     if (result == RESULT_OK)
         result = image_create(view->width, view->height, FORMAT_RGBA8, &frame->display);
+    if (result == RESULT_OK && desc->bound)
+        result = image_create(view->width, view->height, FORMAT_RGBA32F, &frame->bound);
     if (result != RESULT_OK)
         return result;
     Pool *pool = pool_create(desc->threads);
@@ -239,6 +266,12 @@ static Result render_view(const Scene *scene, const RenderDesc *desc, const View
 Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
 {
     *out = (Frame){0};
+    if (desc->bound && !method_has_bound(desc))
+        return result_fail(RESULT_UNSUPPORTED,
+                           "truth: no bound of single precision for method %s%s, expected peel, "
+                           "peel-id, forward, or linked-list without edges",
+                           method_info(desc->method)->name,
+                           render_desc_edges(desc) ? " with edges" : "");
     Clock start = clock_now();
     View view;
     RenderDesc in_order = *desc; /* triangles are numbered as they come */

@@ -23,7 +23,8 @@ typedef struct CompareCommand {
 enum {
     KEY_JSON = 0x200,
     KEY_REPORT,
-    KEY_TOLERANCE
+    KEY_TOLERANCE,
+    KEY_BOUND
 };
 
 static const struct argp_option command_options[] = {
@@ -33,6 +34,8 @@ static const struct argp_option command_options[] = {
      "Allowed difference from truth at the 99th percentile, relative to max(1, value), where both "
      "see the same fragments in the same order (default: the method's, see peel methods)",
      0},
+    {"bound", KEY_BOUND, NULL, 0,
+     "Also compute, for every pixel, how far single precision may be from truth, and compare", 0},
     {0},
 };
 
@@ -50,6 +53,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return options_real(argument, 0.0, 1e30, &command->tolerance)
                    ? 0
                    : options_error("--tolerance %s: expected a number from 0", argument);
+    case KEY_BOUND:
+        command->render.desc.bound = true;
+        return 0;
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;
         return 0;
@@ -120,6 +126,7 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
     for (int i = 0; i < METHOD_COUNT && result == RESULT_OK; i++) {
         RenderDesc desc = command->render.desc;
         desc.method = method_info((MethodId)i)->id;
+        desc.bound = desc.bound && method_has_bound(&desc);
         result = threeway_run(scene, command->render.scene_path, &desc, bind_renderers,
                               command->tolerance, false, &reports[count]);
         if (result != RESULT_OK)

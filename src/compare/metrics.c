@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -168,4 +169,52 @@ Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
     out->p999_rel = fmax(occupied999, percentile(relative, out->pixels, 999));
     free(relative);
     return RESULT_OK;
+}
+
+/* A NaN is beyond every bound but an infinite one. */
+static double bound_ratio(float a, float b, float bound)
+{
+    double difference = fabs((double)a - (double)b);
+    if (difference <= 0.0 || bound > FLT_MAX)
+        return 0.0;
+    return difference < (double)INFINITY && bound > 0.0f ? difference / (double)bound
+                                                         : (double)INFINITY;
+}
+
+Result metrics_bound(const Image *a, const Image *b, const Image *bound, const uint8_t *same,
+                     BoundMetrics *out)
+{
+    size_t pixels = (size_t)a->width * (size_t)a->height;
+    *out = (BoundMetrics){0};
+    float *ratios = memory_array(pixels, sizeof *ratios);
+    float *bounds = memory_array(pixels, sizeof *bounds);
+    Result result = ratios && bounds ? RESULT_OK : RESULT_NO_MEMORY;
+    const float *pa = a->pixels, *pb = b->pixels, *most = bound->pixels;
+    for (size_t i = 0; i < pixels && result == RESULT_OK; i++) {
+        if (same[i] != STRUCTURE_SAME)
+            continue;
+        double ratio = 0.0, greatest = 0.0;
+        for (size_t c = 4 * i; c < 4 * i + 4; c++) {
+            ratio = fmax(ratio, bound_ratio(pa[c], pb[c], most[c]));
+            greatest = fmax(greatest, (double)most[c]);
+        }
+        out->unbounded += greatest == (double)INFINITY;
+        out->max_ratio = fmax(out->max_ratio, ratio);
+        if (ratio > 1.0 && !out->exceeded++) {
+            out->has_first = true;
+            out->first[0] = (int)(i % (size_t)a->width);
+            out->first[1] = (int)(i / (size_t)a->width);
+        }
+        ratios[out->pixels] = (float)ratio;
+        bounds[out->pixels++] = (float)greatest;
+    }
+    if (result == RESULT_OK) {
+        out->median_ratio = percentile(ratios, out->pixels, 500);
+        out->p99_ratio = percentile(ratios, out->pixels, 990);
+        out->median = percentile(bounds, out->pixels, 500);
+        out->p99 = percentile(bounds, out->pixels, 990);
+    }
+    free(ratios);
+    free(bounds);
+    return result;
 }

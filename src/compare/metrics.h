@@ -41,6 +41,19 @@ typedef struct UnaffectedMetrics {
     double p999_rel; /* the 99.9th, alike */
 } UnaffectedMetrics;
 
+/* How a's difference from b compares with what it may be, where both sides see the same fragments
+ * in the same order. A pixel's ratio is the greatest over its channels. */
+typedef struct BoundMetrics {
+    uint64_t pixels;    /* with the same fragments, at least one */
+    uint64_t exceeded;  /* of those, with a channel beyond its bound */
+    uint64_t unbounded; /* of those, with a channel whose bound is infinite */
+    bool has_first;
+    int first[2];                   /* x, y of the first that exceeds, from the top left */
+    double max_ratio;               /* of error over bound */
+    double median_ratio, p99_ratio; /* of the pixels' ratios */
+    double median, p99;             /* of the pixels' greatest bounds */
+} BoundMetrics;
+
 /* Folds the differences of a rectangle of two buffers of one format into metrics (zeroed or from
  * earlier rectangles): rows of a_row_bytes and b_row_bytes, the rectangle's corner at (x, y) of
  * the buffer. Rectangles must come in reading order for `first` to be the first. */
@@ -53,5 +66,9 @@ void metrics_final(const Image *a, const Image *b, FinalMetrics *out);
 /* same: width·height bytes, a StructureSame each. NO_MEMORY on failure. */
 Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
                           UnaffectedMetrics *out);
+
+/* bound: of |a − b|, FORMAT_RGBA32F of the same size. NO_MEMORY on failure. */
+Result metrics_bound(const Image *a, const Image *b, const Image *bound, const uint8_t *same,
+                     BoundMetrics *out);
 
 #endif

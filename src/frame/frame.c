@@ -4,5 +4,6 @@ void frame_free(Frame *frame)
 {
     image_free(&frame->final);
     image_free(&frame->display);
+    image_free(&frame->bound);
     *frame = (Frame){0};
 }

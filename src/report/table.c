@@ -89,6 +89,30 @@ static void print_finals(const Threeway *report, FILE *out)
     }
 }
 
+/* What single precision may do, and what it does. */
+static void print_bounds(const Threeway *report, FILE *out)
+{
+    char name[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER], exceeded[SUMMARY_NUMBER];
+    char unbounded[SUMMARY_NUMBER], a[SUMMARY_NUMBER], b[SUMMARY_NUMBER], c[SUMMARY_NUMBER];
+    char d[SUMMARY_NUMBER], e[SUMMARY_NUMBER];
+    if (!report->pairs[1].has_bound)
+        return;
+    fprintf(out, "\n%-18s %11s %11s %9s %9s %9s %9s %13s %10s\n", "bound of single", "pixels",
+            "exceeded", "max e/b", "median e/b", "p99 e/b", "median", "p99", "unbounded");
+    for (int i = 1; i < 3; i++) {
+        const BoundMetrics *bound = &report->pairs[i].bound;
+        fprintf(out, "%-18s %11s %11s %9s %9s %9s %9s %13s %10s",
+                pair_name(&report->pairs[i], name), summary_count(bound->pixels, pixels),
+                summary_count(bound->exceeded, exceeded), summary_real(bound->max_ratio, a),
+                summary_real(bound->median_ratio, b), summary_real(bound->p99_ratio, c),
+                summary_real(bound->median, d), summary_real(bound->p99, e),
+                summary_count(bound->unbounded, unbounded));
+        if (bound->has_first)
+            fprintf(out, "  first exceeded: %d, %d", bound->first[0], bound->first[1]);
+        fputc('\n', out);
+    }
+}
+
 static void print_layers(const Threeway *report, FILE *out)
 {
     SummaryLayer layers[SUMMARY_LAYERS];
@@ -127,6 +151,7 @@ void report_table_print(const Threeway *report, FILE *out)
     for (int i = 0; i < 3; i++)
         print_buffers(&report->pairs[i], out);
     print_finals(report, out);
+    print_bounds(report, out);
     print_layers(report, out);
     print_times(report, out);
     fprintf(out, "\n%s\n", report->agree ? "AGREE" : "DIFFER");
