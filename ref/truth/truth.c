@@ -93,7 +93,7 @@ static void composite(const Render *render, const TileFragments *tile, int pixel
 /* What the pipeline may differ by from the truth's rgba, the truth's own rounding to float
  * included. */
 static void bound_pixel(const Render *render, const TileFragments *tile, int pixel, int x, int y,
-                        const double rgba[4], float out[4])
+                        const double rgba[4], float out[4], float rounding[4])
 {
     Bounded bound[4] = {bounded_of(0.0), bounded_of(0.0), bounded_of(0.0), bounded_of(1.0)};
     for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1]; i++)
@@ -104,7 +104,9 @@ static void bound_pixel(const Render *render, const TileFragments *tile, int pix
     for (int i = 0; i < 4; i++) {
         double apart = fabs(bound[i].value - rgba[i]) + BOUNDED_SINGLE * fabs(rgba[i]);
         double most = bounded_limit((bound[i].single + apart) * BOUNDED_SLACK);
+        double own = bounded_limit(bound[i].exact + fabs(bound[i].value - rgba[i]));
         out[i] = most > 0.0 ? nextafterf((float)most, INFINITY) : 0.0f;
+        rounding[i] = own > 0.0 ? nextafterf((float)own, INFINITY) : 0.0f;
     }
 }
 
@@ -119,7 +121,8 @@ static void draw_tile(const Render *render, const TileFragments *tile)
             if (render->desc->bound)
                 bound_pixel(render, tile, row * TRACE_TILE + column, x,
                             render->view->height - 1 - image_y, rgba,
-                            image_pixel(&render->frame->bound, x, image_y));
+                            image_pixel(&render->frame->bound, x, image_y),
+                            image_pixel(&render->frame->rounding, x, image_y));
             float *final = image_pixel(&render->frame->final, x, image_y);
             uint8_t *display = image_pixel(&render->frame->display, x, image_y);
             for (int i = 0; i < 4; i++)
@@ -237,7 +240,7 @@ static Result render_view(const Scene *scene, const RenderDesc *desc, const View
 {
     size_t limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
     size_t pixels = (size_t)view->width * (size_t)view->height;
-    size_t image_bytes = pixels * ((desc->bound ? 2 : 1) * format_pixel_bytes(FORMAT_RGBA32F) +
+    size_t image_bytes = pixels * ((desc->bound ? 3 : 1) * format_pixel_bytes(FORMAT_RGBA32F) +
                                    format_pixel_bytes(FORMAT_RGBA8));
     Result result = soup_check_memory(image_bytes, limit);
     if (result == RESULT_OK)
@@ -246,6 +249,8 @@ static Result render_view(const Scene *scene, const RenderDesc *desc, const View
         result = image_create(view->width, view->height, FORMAT_RGBA8, &frame->display);
     if (result == RESULT_OK && desc->bound)
         result = image_create(view->width, view->height, FORMAT_RGBA32F, &frame->bound);
+    if (result == RESULT_OK && desc->bound)
+        result = image_create(view->width, view->height, FORMAT_RGBA32F, &frame->rounding);
     if (result != RESULT_OK)
         return result;
     Pool *pool = pool_create(desc->threads);

@@ -181,40 +181,49 @@ static double bound_ratio(float a, float b, float bound)
                                                          : (double)INFINITY;
 }
 
-Result metrics_bound(const Image *a, const Image *b, const Image *bound, const uint8_t *same,
-                     BoundMetrics *out)
+static double greatest4(const Image *image, size_t pixel)
+{
+    const float *values = (const float *)image->pixels + 4 * pixel;
+    return (double)fmaxf(fmaxf(values[0], values[1]), fmaxf(values[2], values[3]));
+}
+
+/* One pixel's figures: its ratio, and its greatest bounds. */
+static void add_bound(const Image *a, const Frame *truth, size_t pixel, float *lists[3],
+                      BoundMetrics *out)
+{
+    const float *pa = a->pixels, *pb = truth->final.pixels, *most = truth->bound.pixels;
+    double ratio = 0.0, greatest = greatest4(&truth->bound, pixel);
+    for (size_t c = 4 * pixel; c < 4 * pixel + 4; c++)
+        ratio = fmax(ratio, bound_ratio(pa[c], pb[c], most[c]));
+    out->unbounded += greatest > (double)FLT_MAX;
+    out->max_ratio = fmax(out->max_ratio, ratio);
+    if (ratio > 1.0 && !out->exceeded++) {
+        out->has_first = true;
+        out->first[0] = (int)(pixel % (size_t)a->width);
+        out->first[1] = (int)(pixel / (size_t)a->width);
+    }
+    lists[0][out->pixels] = (float)ratio;
+    lists[1][out->pixels] = (float)greatest;
+    lists[2][out->pixels++] = (float)greatest4(&truth->rounding, pixel);
+}
+
+Result metrics_bound(const Image *a, const Frame *truth, const uint8_t *same, BoundMetrics *out)
 {
     size_t pixels = (size_t)a->width * (size_t)a->height;
     *out = (BoundMetrics){0};
-    float *ratios = memory_array(pixels, sizeof *ratios);
-    float *bounds = memory_array(pixels, sizeof *bounds);
-    Result result = ratios && bounds ? RESULT_OK : RESULT_NO_MEMORY;
-    const float *pa = a->pixels, *pb = b->pixels, *most = bound->pixels;
-    for (size_t i = 0; i < pixels && result == RESULT_OK; i++) {
-        if (same[i] != STRUCTURE_SAME)
-            continue;
-        double ratio = 0.0, greatest = 0.0;
-        for (size_t c = 4 * i; c < 4 * i + 4; c++) {
-            ratio = fmax(ratio, bound_ratio(pa[c], pb[c], most[c]));
-            greatest = fmax(greatest, (double)most[c]);
-        }
-        out->unbounded += greatest == (double)INFINITY;
-        out->max_ratio = fmax(out->max_ratio, ratio);
-        if (ratio > 1.0 && !out->exceeded++) {
-            out->has_first = true;
-            out->first[0] = (int)(i % (size_t)a->width);
-            out->first[1] = (int)(i / (size_t)a->width);
-        }
-        ratios[out->pixels] = (float)ratio;
-        bounds[out->pixels++] = (float)greatest;
-    }
-    if (result == RESULT_OK) {
-        out->median_ratio = percentile(ratios, out->pixels, 500);
-        out->p99_ratio = percentile(ratios, out->pixels, 990);
-        out->median = percentile(bounds, out->pixels, 500);
-        out->p99 = percentile(bounds, out->pixels, 990);
-    }
-    free(ratios);
-    free(bounds);
-    return result;
+    float *values = memory_array(3 * pixels, sizeof *values);
+    if (!values)
+        return RESULT_NO_MEMORY;
+    float *lists[3] = {values, values + pixels, values + 2 * pixels};
+    for (size_t i = 0; i < pixels; i++)
+        if (same[i] == STRUCTURE_SAME)
+            add_bound(a, truth, i, lists, out);
+    out->median_ratio = percentile(lists[0], out->pixels, 500);
+    out->p99_ratio = percentile(lists[0], out->pixels, 990);
+    out->median = percentile(lists[1], out->pixels, 500);
+    out->p99 = percentile(lists[1], out->pixels, 990);
+    out->rounding_median = percentile(lists[2], out->pixels, 500);
+    out->rounding_p99 = percentile(lists[2], out->pixels, 990);
+    free(values);
+    return RESULT_OK;
 }

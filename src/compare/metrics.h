@@ -3,6 +3,7 @@
 #define PEEL_COMPARE_METRICS_H
 
 #include "compare/structure.h"
+#include "frame/frame.h"
 #include "image/image.h"
 
 #include <stdbool.h>
@@ -48,10 +49,11 @@ typedef struct BoundMetrics {
     uint64_t exceeded;  /* of those, with a channel beyond its bound */
     uint64_t unbounded; /* of those, with a channel whose bound is infinite */
     bool has_first;
-    int first[2];                   /* x, y of the first that exceeds, from the top left */
-    double max_ratio;               /* of error over bound */
-    double median_ratio, p99_ratio; /* of the pixels' ratios */
-    double median, p99;             /* of the pixels' greatest bounds */
+    int first[2];                         /* x, y of the first that exceeds, from the top left */
+    double max_ratio;                     /* of error over bound */
+    double median_ratio, p99_ratio;       /* of the pixels' ratios */
+    double median, p99;                   /* of the pixels' greatest bounds */
+    double rounding_median, rounding_p99; /* the same of b's own */
 } BoundMetrics;
 
 /* Folds the differences of a rectangle of two buffers of one format into metrics (zeroed or from
@@ -67,8 +69,7 @@ void metrics_final(const Image *a, const Image *b, FinalMetrics *out);
 Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
                           UnaffectedMetrics *out);
 
-/* bound: of |a − b|, FORMAT_RGBA32F of the same size. NO_MEMORY on failure. */
-Result metrics_bound(const Image *a, const Image *b, const Image *bound, const uint8_t *same,
-                     BoundMetrics *out);
+/* a: final; truth: with its bounds. NO_MEMORY on failure. */
+Result metrics_bound(const Image *a, const Frame *truth, const uint8_t *same, BoundMetrics *out);
 
 #endif

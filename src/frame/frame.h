@@ -28,6 +28,9 @@ typedef struct Frame {
      * be from this one, in single precision and in desc's formats, where it sees the same fragments
      * in the same order; infinite where that is not known. */
     Image bound;
+    /* With bound, FORMAT_RGBA32F too: how far truth's own colour, before it is rounded to float,
+     * may be from what exact arithmetic gives. */
+    Image rounding;
     int peels;           /* geometry passes over the transparent list that yielded a fragment */
     int geometry_passes; /* over the transparent list; the one over the opaque list is extra */
     uint64_t fragments_shaded; /* lit and blended: opaque and transparent; ref only */

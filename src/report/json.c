@@ -119,6 +119,8 @@ static json_t *pairs(Document *json, const Threeway *report)
             document_put(json, bound, "p99_ratio", real(pair->bound.p99_ratio));
             document_put(json, bound, "median", real(pair->bound.median));
             document_put(json, bound, "p99", real(pair->bound.p99));
+            document_put(json, bound, "rounding_median", real(pair->bound.rounding_median));
+            document_put(json, bound, "rounding_p99", real(pair->bound.rounding_p99));
             document_put(json, one, "bound", bound);
         }
         document_append(json, array, one);

@@ -111,6 +111,9 @@ static void print_bounds(const Threeway *report, FILE *out)
             fprintf(out, "  first exceeded: %d, %d", bound->first[0], bound->first[1]);
         fputc('\n', out);
     }
+    fprintf(out, "(truth's own rounding: at most %s in half of these pixels, %s in 99 of 100)\n",
+            summary_real(report->pairs[1].bound.rounding_median, a),
+            summary_real(report->pairs[1].bound.rounding_p99, b));
 }
 
 static void print_layers(const Threeway *report, FILE *out)

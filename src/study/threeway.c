@@ -175,10 +175,10 @@ static Result compare_pairs(Run *run)
         if (!pair->has_unaffected)
             continue;
         Result result = metrics_unaffected(a, b, report->structure.same, &pair->unaffected);
-        const Image *bound = &report->frames[RENDERER_TRUTH].bound;
-        pair->has_bound = bound->pixels != NULL;
+        const Frame *truth = &report->frames[RENDERER_TRUTH];
+        pair->has_bound = truth->bound.pixels != NULL;
         if (result == RESULT_OK && pair->has_bound)
-            result = metrics_bound(a, b, bound, report->structure.same, &pair->bound);
+            result = metrics_bound(a, truth, report->structure.same, &pair->bound);
         if (result != RESULT_OK)
             return result;
     }
@@ -343,6 +343,7 @@ void threeway_release_images(Threeway *report)
         image_free(&report->frames[i].final);
         image_free(&report->frames[i].display);
         image_free(&report->frames[i].bound);
+        image_free(&report->frames[i].rounding);
     }
 }
 
