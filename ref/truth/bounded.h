@@ -20,6 +20,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 
 #define BOUNDED_SINGLE 0x1p-24   /* unit roundoff of float */
 #define BOUNDED_TINY   0x1p-126  /* what flushing a denormal may lose */
@@ -160,7 +161,7 @@ static inline Bounded bounded_dot(const Bounded a[3], const Bounded b[3])
 }
 
 /* Whether a may be greater than limit in any of the computations. */
-static inline int bounded_may_exceed(Bounded a, double limit)
+static inline bool bounded_may_exceed(Bounded a, double limit)
 {
     return a.value + a.exact > limit || a.value + a.single > limit;
 }
@@ -168,8 +169,9 @@ static inline int bounded_may_exceed(Bounded a, double limit)
 /* a where u ≥ 0, else 0: either where u's sign is not certain. */
 static inline Bounded bounded_unless_negative(Bounded u, Bounded a)
 {
-    double kept = u.value < 0.0 ? 0.0 : a.value, other = fabs(a.value);
-    double exact = kept == 0.0 ? 0.0 : a.exact, single = kept == 0.0 ? 0.0 : a.single;
+    bool negative = u.value < 0.0;
+    double kept = negative ? 0.0 : a.value, other = fabs(a.value);
+    double exact = negative ? 0.0 : a.exact, single = negative ? 0.0 : a.single;
     if (fabs(u.value) <= u.exact)
         exact = other + a.exact;
     if (fabs(u.value) <= u.single)
