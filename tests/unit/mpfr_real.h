@@ -9,7 +9,7 @@
 
 enum {
     REAL_BITS = 200,
-    REAL_SLOTS = 1 << 17
+    REAL_SLOTS = 1 << 18
 };
 
 typedef mpfr_ptr Real;
