@@ -193,9 +193,8 @@ static void store_surface(const View *view, const RenderDesc *desc, Bounded dept
     surface->occlusion = bound_store(layout.material, surface->occlusion);
 }
 
-/* What the lighting pass fetches. */
-static void find_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x,
-                         int y, BoundedSurface *surface)
+void bound_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
+                   BoundedSurface *surface)
 {
     Triangle triangle = make_triangle(soup, fragment->triangle);
     const Material *material = triangle.draw->material;
@@ -239,7 +238,7 @@ void bound_blend(const Soup *soup, const RenderDesc *desc, const Fragment *fragm
     bool transparent = soup_draw(soup, fragment->triangle)->draw->transparent;
     BoundedForm form = {desc->shading, desc->ggx, desc->back_light && transparent};
     BoundedSurface surface;
-    find_surface(soup, desc, fragment, x, y, &surface);
+    bound_surface(soup, desc, fragment, x, y, &surface);
     const double test = (double)SHADING_ALPHA_TEST;
     Bounded alpha = surface.diffuse[3], source[4], before[4];
     double error = largest(alpha.exact, alpha.single);

@@ -11,9 +11,14 @@
 
 #include "ref/truth/bounded.h"
 #include "ref/truth/fragments.h"
+#include "ref/truth/radiance_bound.h"
 
-/* Puts a fragment behind rgba, colour so far and transmittance: (0, 0, 0, 1) to begin with. (x, y):
- * its pixel, y up. */
+/* What the lighting pass has of a fragment: interpolated and, but in forward methods, stored in the
+ * G-buffer. (x, y): its pixel, y up. */
+void bound_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
+                   BoundedSurface *surface);
+
+/* Puts a fragment behind rgba, colour so far and transmittance: (0, 0, 0, 1) to begin with. */
 void bound_blend(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
                  Bounded rgba[4]);
 

@@ -40,7 +40,8 @@ typedef struct SingleVertex {
 } SingleVertex;
 
 typedef struct SinglePolygon {
-    int count; /* 0: nothing is left */
+    int count;  /* 0: nothing is left */
+    bool whole; /* it was not clipped: the corners are in the triangle's order, not a fan */
     SingleVertex corner[SINGLE_CORNERS_MAX];
 } SinglePolygon;
 

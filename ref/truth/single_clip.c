@@ -150,6 +150,7 @@ int single_clip(const SingleViewport *viewport, const SingleVertex triangle[3], 
     bool original[PLANES][3], used[PLANES] = {false};
     SinglePolygon other;
     out->count = 3;
+    out->whole = true;
     memcpy(out->corner, triangle, 3 * sizeof *triangle);
     /* Only planes that a corner of the triangle fails are clipped against, and corners keep the
      * side that they had then. */
@@ -164,6 +165,7 @@ int single_clip(const SingleViewport *viewport, const SingleVertex triangle[3], 
         bool inside[SINGLE_CORNERS_MAX];
         if (!used[plane])
             continue;
+        out->whole = other.whole = false;
         for (int i = 0; i < current->count; i++)
             inside[i] =
                 source[i] >= 0

@@ -367,6 +367,8 @@ static void add_polygon(const SingleViewport *viewport, const SingleVertex trian
         }
     for (int i = 2; i < polygon->count; i++) {
         Piece piece = {.corner = {corners[i - 1], corners[i], corners[0]}};
+        if (polygon->whole)
+            piece = (Piece){.corner = {corners[0], corners[1], corners[2]}};
         if (polygon->count > 3 && !may_cover(piece.corner))
             continue;
         errors->any = true;
