@@ -233,8 +233,8 @@ static void check_pixel(const Soup *soup, const RenderDesc *desc, const TileFrag
             totals->worst = fmax(totals->worst, off / bound[i].exact);
         }
         double rounded = fabs((double) final[i] - bound[i].value);
-        ck_assert_msg(rounded <= 1.0001 * BOUNDED_SINGLE * fabs(bound[i].value) + 1e-45 +
-                                     (double)rounding[i],
+        ck_assert_msg(rounded <=
+                          1.0001 * BOUNDED_SINGLE * fabs(bound[i].value) + 1e-45 + bound[i].exact,
                       "%d, %d, channel %d: the frame has %.9g, not %.17g", x, row, i,
                       (double) final[i], bound[i].value);
     }
