@@ -11,6 +11,8 @@
 #include "testing.h"
 
 #include "compare/store.h"
+#include "ref/pipeline/buffers.h"
+#include "ref/pipeline/encode.h"
 #include "ref/pipeline/pipeline.h"
 #include "ref/truth/bound.h"
 
@@ -83,25 +85,43 @@ static void check_value(const Case *of, Part part, int x, int row, float value, 
     }
 }
 
+/* What the lighting pass fetches and decodes, part by part. */
+static void fetch(const Case *of, const Image images[PARTS], const Image *depth, int x, int row,
+                  float values[PARTS][4])
+{
+    uint32_t saved = op_enter();
+    for (int part = 0; part < PARTS; part++)
+        if (images[part].pixels)
+            format_fetch(images[part].format, image_pixel(&images[part], x, row), values[part]);
+    if (images[NORMAL].format == FORMAT_RG16)
+        decode_octahedral(values[NORMAL], values[NORMAL]);
+    if (!images[POSITION].pixels)
+        decode_position(&of->view.unprojection,
+                        depth_fetch(depth->format, *(const uint32_t *)image_pixel(depth, x, row)),
+                        x, SIZE - 1 - row, values[POSITION]);
+    op_leave(saved);
+}
+
 static void check_fragment(const Case *of, const Fragment *fragment, int x, int row,
-                           const Image images[PARTS])
+                           const Image images[PARTS], const Image *depth)
 {
     BoundedSurface surface;
     Tally *tallies = of->tallies[of->seed % SOUP_KINDS];
     bound_surface(&of->soup, &of->desc, fragment, x, SIZE - 1 - row, &surface);
     const Bounded material[3] = {surface.roughness, surface.metallic, surface.occlusion};
     const Bounded *bounds[PARTS] = {surface.position, surface.normal, surface.diffuse, material};
-    for (int part = 0; part < PARTS; part++) {
-        const float *values = image_pixel(&images[part], x, row);
+    float values[PARTS][4];
+    fetch(of, images, depth, x, row, values);
+    for (int part = 0; part < PARTS; part++)
         for (int i = 0; i < 3 + (part == DIFFUSE); i++)
-            check_value(of, (Part)part, x, row, values[i], bounds[part][i], &tallies[part]);
-    }
+            check_value(of, (Part)part, x, row, values[part][i], bounds[part][i], &tallies[part]);
 }
 
 /* One layer's fragments, where ref and truth have the same. */
 static void check_layer(const Case *of, int peel)
 {
-    Image images[PARTS], ids = load(of->trace, peel, "primitive");
+    Image images[PARTS], ids = load(of->trace, peel, "primitive"),
+                         depth = load(of->trace, peel, "depth");
     for (int part = 0; part < PARTS; part++)
         images[part] = load(of->trace, peel, part_names[part]);
     for (int pixel = 0; ids.pixels && pixel < SIZE * SIZE; pixel++) {
@@ -112,9 +132,10 @@ static void check_layer(const Case *of, int peel)
         bool there =
             peel < 0 ? fragment->triangle != FRAGMENTS_NO_TRIANGLE : at < tile->first[pixel + 1];
         if (there && id == soup_primitive(&of->soup, fragment->triangle))
-            check_fragment(of, fragment, pixel % SIZE, pixel / SIZE, images);
+            check_fragment(of, fragment, pixel % SIZE, pixel / SIZE, images, &depth);
     }
     image_free(&ids);
+    image_free(&depth);
     for (int part = 0; part < PARTS; part++)
         image_free(&images[part]);
 }
@@ -132,6 +153,12 @@ static void run_case(uint64_t seed, Tally tallies[SOUP_KINDS][PARTS])
                            .depth_range = (DepthRange)(random_bits(&random) % 3),
                            .normals = (NormalMode)(random_bits(&random) % 2),
                            .unfused = random_bits(&random) % 2};
+    if (seed / SOUP_KINDS % 2) { /* every other soup of a kind is stored in fewer bits */
+        of.desc.gbuffer = (GBufferFormat)(1 + random_bits(&random) % 2);
+        of.desc.position = (PositionSource)(random_bits(&random) % 2);
+        of.desc.depth =
+            (PixelFormat[]){FORMAT_D32F, FORMAT_D24, FORMAT_D16}[random_bits(&random) % 3];
+    }
     soup_make_kind(&random, (SoupKind)(seed % SOUP_KINDS), SIZE, SIZE, &random_soup);
     Frame frame;
     ok(store_create(0, &of.trace));
