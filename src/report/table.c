@@ -78,14 +78,15 @@ static void print_finals(const Threeway *report, FILE *out)
                 summary_psnr(final->psnr, d), summary_ulp(final->max_ulp, ulp),
                 summary_count(final->nonfinite, nonfinite));
     }
-    fprintf(out, "\n%-18s %11s %11s %9s %9s\n", "same structure", "pixels", "max abs", "max rel",
-            "p99 rel");
+    fprintf(out, "\n%-18s %11s %11s %9s %9s %9s\n", "same structure", "pixels", "max abs",
+            "max rel", "p99 rel", "p99.9 rel");
     for (int i = 0; i < 3; i++) {
         const UnaffectedMetrics *unaffected = &report->pairs[i].unaffected;
         if (report->pairs[i].has_unaffected)
-            fprintf(out, "%-18s %11s %11s %9s %9s\n", pair_name(&report->pairs[i], name),
+            fprintf(out, "%-18s %11s %11s %9s %9s %9s\n", pair_name(&report->pairs[i], name),
                     summary_count(unaffected->pixels, pixels), summary_real(unaffected->max_abs, a),
-                    summary_real(unaffected->max_rel, b), summary_real(unaffected->p99_rel, c));
+                    summary_real(unaffected->max_rel, b), summary_real(unaffected->p99_rel, c),
+                    summary_real(unaffected->p999_rel, d));
     }
 }
 
