@@ -2,7 +2,9 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "frame/method.h"
 #include "frame/shading.h"
+#include "ref/truth/bound.h"
 #include "ref/truth/fragments.h"
 #include "ref/truth/radiance.h"
 
@@ -82,7 +84,7 @@ static void light_fragment(const Render *render, const Fragment *fragment, int x
 static void blend_fragment(const Lit *lit, double rgba[4])
 {
     for (int i = 0; i < 3; i++)
-        rgba[i] += rgba[3] * lit->alpha * lit->rgb[i];
+        rgba[i] += lit->rgb[i] * lit->alpha * rgba[3];
     rgba[3] *= 1.0 - lit->alpha;
 }
 
@@ -125,6 +127,26 @@ static uint32_t composite(const Render *render, const TileFragments *tile, int p
     return count;
 }
 
+/* What the pipeline may differ by from the truth's rgba, the truth's own rounding to float
+ * included. */
+static void bound_pixel(const Render *render, const TileFragments *tile, int pixel, int x, int y,
+                        const double rgba[4], float out[4], float rounding[4])
+{
+    Bounded bound[4] = {bounded_of(0.0), bounded_of(0.0), bounded_of(0.0), bounded_of(1.0)};
+    for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1]; i++)
+        bound_blend(&render->soup, render->desc, &tile->sorted[i], x, y, bound);
+    if (tile->opaque[pixel].triangle != FRAGMENT_NO_TRIANGLE)
+        bound_blend(&render->soup, render->desc, &tile->opaque[pixel], x, y, bound);
+    bound_resolve(render->view, render->desc->accum, bound);
+    for (int i = 0; i < 4; i++) {
+        double apart = fabs(bound[i].value - rgba[i]) + BOUNDED_SINGLE * fabs(rgba[i]);
+        double most = bounded_limit((bound[i].single + apart) * BOUNDED_SLACK);
+        double own = bounded_limit(bound[i].exact + fabs(bound[i].value - rgba[i]));
+        out[i] = most > 0.0 ? nextafterf((float)most, INFINITY) : 0.0f;
+        rounding[i] = own > 0.0 ? nextafterf((float)own, INFINITY) : 0.0f;
+    }
+}
+
 /* Room for the tile's samples; NULL when none are asked for. */
 static Result reserve_samples(Render *render, const TileFragments *tile, DeepSample **out)
 {
@@ -156,6 +178,11 @@ static Result draw_tile(Render *render, const TileFragments *tile)
                 deep_set(render->deep, x, image_y, samples, count);
                 samples += count;
             }
+            if (render->desc->bound)
+                bound_pixel(render, tile, row * TRACE_TILE + column, x,
+                            render->view->height - 1 - image_y, rgba,
+                            image_pixel(&render->frame->bound, x, image_y),
+                            image_pixel(&render->frame->rounding, x, image_y));
             float *final = image_pixel(&render->frame->final, x, image_y);
             uint8_t *display = image_pixel(&render->frame->display, x, image_y);
             for (int i = 0; i < 4; i++)
@@ -316,13 +343,17 @@ static Result render_view(const Scene *scene, Render *render)
     Frame *frame = render->frame;
     size_t limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
     size_t pixels = (size_t)view->width * (size_t)view->height;
-    size_t image_bytes =
-        pixels * (format_pixel_bytes(FORMAT_RGBA32F) + format_pixel_bytes(FORMAT_RGBA8));
+    size_t image_bytes = pixels * ((desc->bound ? 3 : 1) * format_pixel_bytes(FORMAT_RGBA32F) +
+                                   format_pixel_bytes(FORMAT_RGBA8));
     Result result = soup_check_memory(image_bytes, limit);
     if (result == RESULT_OK)
         result = image_create(view->width, view->height, FORMAT_RGBA32F, &frame->final);
     if (result == RESULT_OK)
         result = image_create(view->width, view->height, FORMAT_RGBA8, &frame->display);
+    if (result == RESULT_OK && desc->bound)
+        result = image_create(view->width, view->height, FORMAT_RGBA32F, &frame->bound);
+    if (result == RESULT_OK && desc->bound)
+        result = image_create(view->width, view->height, FORMAT_RGBA32F, &frame->rounding);
     if (result != RESULT_OK)
         return result;
     Pool *pool = pool_create(desc->threads);
@@ -343,6 +374,12 @@ static Result render_frame(const Scene *scene, const RenderDesc *desc, TraceSink
                            DeepImage *deep, Frame *out)
 {
     *out = (Frame){0};
+    if (desc->bound && !method_has_bound(desc))
+        return result_fail(RESULT_UNSUPPORTED,
+                           "truth: no bound of single precision for method %s%s, expected peel, "
+                           "peel-id, forward, or linked-list without edges",
+                           method_info(desc->method)->name,
+                           render_desc_edges(desc) ? " with edges" : "");
     Clock start = clock_now();
     View view;
     RenderDesc in_order = *desc; /* triangles are numbered as they come */

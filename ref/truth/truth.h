@@ -5,7 +5,11 @@
  * (clipped pieces snapped to 1/256 pixel, coverage.h); depth and attributes are those of the exact,
  * unclipped, unsnapped triangle at the pixel's centre. No pass limit, no stored formats: desc's
  * method, passes, depth, accum, gbuffer, position, peel_test, ggx, opaque_blend and unfused change
- * nothing.
+ * nothing but the bounds.
+ *
+ * With desc->bound it also says, for every pixel, how far its own rounding and how far the
+ * pipeline's single precision and formats may take the colour (Frame.rounding, Frame.bound;
+ * bound.h). UNSUPPORTED for methods that have no such bound (method_has_bound).
  *
  * Textures are sampled at exact, perspective-correct uv. At the borders of nearest texels, of a
  * mask's holes, and where alpha crosses SHADING_ALPHA_TEST, the picture jumps; a pixel whose centre

@@ -28,6 +28,7 @@ enum {
     KEY_JSON = 0x200,
     KEY_REPORT,
     KEY_TOLERANCE,
+    KEY_BOUND,
     KEY_BUDGET,
     KEY_CLASSES
 };
@@ -51,6 +52,8 @@ static const struct argp_option command_options[] = {
      "Write a PNG in which each pixel's colour says why it differs (with --budget's table as its "
      "legend)",
      0},
+    {"bound", KEY_BOUND, NULL, 0,
+     "Also compute, for every pixel, how far single precision may be from truth, and compare", 0},
     {0},
 };
 
@@ -74,6 +77,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_CLASSES:
         command->classes = argument;
         command->budget = true;
+        return 0;
+    case KEY_BOUND:
+        command->render.desc.bound = true;
         return 0;
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;
@@ -146,6 +152,7 @@ static Result compare_method(const CompareCommand *command, const Scene *scene, 
     RenderDesc desc = command->render.desc;
     char context[64];
     desc.method = id;
+    desc.bound = desc.bound && method_has_bound(&desc);
     snprintf(context, sizeof context, "method %d of %d, %s", (int)id + 1, METHOD_COUNT,
              method_info(id)->name);
     progress_context(context);

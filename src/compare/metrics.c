@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -130,10 +131,11 @@ static float select_rank(float *values, size_t count, size_t rank)
     return values[rank];
 }
 
-/* Nearest rank: the least value that at least 99 % of the values do not exceed; 0 of none. */
-static double percentile99(float *values, size_t count)
+/* Nearest rank: the least value that at least thousandths / 1000 of the values do not exceed; 0 of
+ * none. */
+static double percentile(float *values, size_t count, size_t thousandths)
 {
-    return count ? (double)select_rank(values, count, (count * 99 + 99) / 100 - 1) : 0.0;
+    return count ? (double)select_rank(values, count, (count * thousandths + 999) / 1000 - 1) : 0.0;
 }
 
 Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
@@ -160,9 +162,68 @@ Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
         relative[at] = (float)worst;
     }
     out->pixels = out->occupied + empty;
-    double occupied = percentile99(relative, out->occupied);
+    double occupied = percentile(relative, out->occupied, 990);
+    double occupied999 = percentile(relative, out->occupied, 999);
     memmove(relative + out->occupied, relative + pixels - empty, empty * sizeof *relative);
-    out->p99_rel = fmax(occupied, percentile99(relative, out->pixels));
+    out->p99_rel = fmax(occupied, percentile(relative, out->pixels, 990));
+    out->p999_rel = fmax(occupied999, percentile(relative, out->pixels, 999));
     free(relative);
+    return RESULT_OK;
+}
+
+/* A NaN is beyond every bound but an infinite one. */
+static double bound_ratio(float a, float b, float bound)
+{
+    double difference = fabs((double)a - (double)b);
+    if (difference <= 0.0 || bound > FLT_MAX)
+        return 0.0;
+    return difference < (double)INFINITY && bound > 0.0f ? difference / (double)bound
+                                                         : (double)INFINITY;
+}
+
+static double greatest4(const Image *image, size_t pixel)
+{
+    const float *values = (const float *)image->pixels + 4 * pixel;
+    return (double)fmaxf(fmaxf(values[0], values[1]), fmaxf(values[2], values[3]));
+}
+
+/* One pixel's figures: its ratio, and its greatest bounds. */
+static void add_bound(const Image *a, const Frame *truth, size_t pixel, float *lists[3],
+                      BoundMetrics *out)
+{
+    const float *pa = a->pixels, *pb = truth->final.pixels, *most = truth->bound.pixels;
+    double ratio = 0.0, greatest = greatest4(&truth->bound, pixel);
+    for (size_t c = 4 * pixel; c < 4 * pixel + 4; c++)
+        ratio = fmax(ratio, bound_ratio(pa[c], pb[c], most[c]));
+    out->unbounded += greatest > (double)FLT_MAX;
+    out->max_ratio = fmax(out->max_ratio, ratio);
+    if (ratio > 1.0 && !out->exceeded++) {
+        out->has_first = true;
+        out->first[0] = (int)(pixel % (size_t)a->width);
+        out->first[1] = (int)(pixel / (size_t)a->width);
+    }
+    lists[0][out->pixels] = (float)ratio;
+    lists[1][out->pixels] = (float)greatest;
+    lists[2][out->pixels++] = (float)greatest4(&truth->rounding, pixel);
+}
+
+Result metrics_bound(const Image *a, const Frame *truth, const uint8_t *same, BoundMetrics *out)
+{
+    size_t pixels = (size_t)a->width * (size_t)a->height;
+    *out = (BoundMetrics){0};
+    float *values = memory_array(3 * pixels, sizeof *values);
+    if (!values)
+        return RESULT_NO_MEMORY;
+    float *lists[3] = {values, values + pixels, values + 2 * pixels};
+    for (size_t i = 0; i < pixels; i++)
+        if (same[i] == STRUCTURE_SAME)
+            add_bound(a, truth, i, lists, out);
+    out->median_ratio = percentile(lists[0], out->pixels, 500);
+    out->p99_ratio = percentile(lists[0], out->pixels, 990);
+    out->median = percentile(lists[1], out->pixels, 500);
+    out->p99 = percentile(lists[1], out->pixels, 990);
+    out->rounding_median = percentile(lists[2], out->pixels, 500);
+    out->rounding_p99 = percentile(lists[2], out->pixels, 990);
+    free(values);
     return RESULT_OK;
 }

@@ -3,6 +3,7 @@
 #define PEEL_COMPARE_METRICS_H
 
 #include "compare/structure.h"
+#include "frame/frame.h"
 #include "image/image.h"
 
 #include <stdbool.h>
@@ -38,7 +39,22 @@ typedef struct UnaffectedMetrics {
     /* 99th percentile of a pixel's greatest relative difference: over all these pixels, or over the
      * occupied ones, whichever is greater, so that background neither hides nor is hidden. */
     double p99_rel;
+    double p999_rel; /* the 99.9th, alike */
 } UnaffectedMetrics;
+
+/* How a's difference from b compares with what it may be, where both sides see the same fragments
+ * in the same order. A pixel's ratio is the greatest over its channels. */
+typedef struct BoundMetrics {
+    uint64_t pixels;    /* with the same fragments, at least one */
+    uint64_t exceeded;  /* of those, with a channel beyond its bound */
+    uint64_t unbounded; /* of those, with a channel whose bound is infinite */
+    bool has_first;
+    int first[2];                         /* x, y of the first that exceeds, from the top left */
+    double max_ratio;                     /* of error over bound */
+    double median_ratio, p99_ratio;       /* of the pixels' ratios */
+    double median, p99;                   /* of the pixels' greatest bounds */
+    double rounding_median, rounding_p99; /* the same of b's own */
+} BoundMetrics;
 
 /* Folds the differences of a rectangle of two buffers of one format into metrics (zeroed or from
  * earlier rectangles): rows of a_row_bytes and b_row_bytes, the rectangle's corner at (x, y) of
@@ -52,5 +68,8 @@ void metrics_final(const Image *a, const Image *b, FinalMetrics *out);
 /* same: width·height bytes, a StructureSame each. NO_MEMORY on failure. */
 Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
                           UnaffectedMetrics *out);
+
+/* a: final; truth: with its bounds. NO_MEMORY on failure. */
+Result metrics_bound(const Image *a, const Frame *truth, const uint8_t *same, BoundMetrics *out);
 
 #endif

@@ -29,7 +29,14 @@ typedef struct LayerStats {
 typedef struct Frame {
     Image final;   /* FORMAT_RGBA32F: linear RGB over the background, A = coverage (1 − T) */
     Image display; /* FORMAT_RGBA8: display-transformed, A = 255 */
-    int peels;     /* geometry passes over the transparent list that yielded a fragment */
+    /* truth, where RenderDesc.bound asks for it: FORMAT_RGBA32F, how far the pipeline's final may
+     * be from this one, in single precision and in desc's formats, where it sees the same fragments
+     * in the same order; infinite where that is not known. */
+    Image bound;
+    /* With bound, FORMAT_RGBA32F too: how far truth's own colour, before it is rounded to float,
+     * may be from what exact arithmetic gives. */
+    Image rounding;
+    int peels;           /* geometry passes over the transparent list that yielded a fragment */
     int geometry_passes; /* over the transparent list; the one over the opaque list is extra */
     uint64_t fragments_shaded; /* lit and blended: opaque and transparent; ref only */
     LayerStats layers;

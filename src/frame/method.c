@@ -53,6 +53,20 @@ static const MethodInfo methods[METHOD_COUNT] = {
          "objects or triangles sorted by centroid and blended over; one pass", false, false, 0},
 };
 
+bool method_has_bound(const RenderDesc *desc)
+{
+    switch (desc->method) {
+    case METHOD_PEEL:
+    case METHOD_PEEL_ID:
+    case METHOD_FORWARD:
+        return true;
+    case METHOD_LINKED_LIST:
+        return !render_desc_edges(desc);
+    default:
+        return false;
+    }
+}
+
 const MethodInfo *method_info(MethodId id)
 {
     return &methods[id];

@@ -15,6 +15,10 @@ typedef struct MethodInfo {
                        * in its best formats; 0 where it is not exact */
 } MethodInfo;
 
+/* Whether truth knows how far single precision may be from it (RenderDesc.bound): methods that
+ * shade each layer from a G-buffer, or at once, and blend from front to back. */
+bool method_has_bound(const RenderDesc *desc);
+
 const MethodInfo *method_info(MethodId id);      /* static */
 const MethodInfo *method_find(const char *name); /* NULL when there is none */
 

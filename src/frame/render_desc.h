@@ -159,6 +159,7 @@ typedef struct RenderDesc {
     bool unfused;          /* model a driver without fused multiply-add */
     RefPath ref_path;
     SimdChoice simd;
+    bool bound;        /* truth: fill Frame.bound */
     int threads;       /* 0: one per processor */
     size_t max_memory; /* bytes a renderer may allocate for buffers; 0: 4 GiB */
 } RenderDesc;

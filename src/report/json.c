@@ -110,7 +110,22 @@ static json_t *pairs(Document *json, const Threeway *report)
             document_put(json, unaffected, "max_abs", real(pair->unaffected.max_abs));
             document_put(json, unaffected, "max_rel", real(pair->unaffected.max_rel));
             document_put(json, unaffected, "p99_rel", real(pair->unaffected.p99_rel));
+            document_put(json, unaffected, "p999_rel", real(pair->unaffected.p999_rel));
             document_put(json, one, "unaffected", unaffected);
+        }
+        if (pair->has_bound) {
+            json_t *bound = json_object();
+            document_put(json, bound, "pixels", count(pair->bound.pixels));
+            document_put(json, bound, "exceeded", count(pair->bound.exceeded));
+            document_put(json, bound, "unbounded", count(pair->bound.unbounded));
+            document_put(json, bound, "max_ratio", real(pair->bound.max_ratio));
+            document_put(json, bound, "median_ratio", real(pair->bound.median_ratio));
+            document_put(json, bound, "p99_ratio", real(pair->bound.p99_ratio));
+            document_put(json, bound, "median", real(pair->bound.median));
+            document_put(json, bound, "p99", real(pair->bound.p99));
+            document_put(json, bound, "rounding_median", real(pair->bound.rounding_median));
+            document_put(json, bound, "rounding_p99", real(pair->bound.rounding_p99));
+            document_put(json, one, "bound", bound);
         }
         document_append(json, array, one);
     }

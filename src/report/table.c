@@ -78,14 +78,15 @@ static void print_finals(const Threeway *report, FILE *out)
                 summary_psnr(final->psnr, d), summary_ulp(final->max_ulp, ulp),
                 summary_count(final->nonfinite, nonfinite));
     }
-    fprintf(out, "\n%-18s %11s %11s %9s %9s\n", "same structure", "pixels", "max abs", "max rel",
-            "p99 rel");
+    fprintf(out, "\n%-18s %11s %11s %9s %9s %9s\n", "same structure", "pixels", "max abs",
+            "max rel", "p99 rel", "p99.9 rel");
     for (int i = 0; i < 3; i++) {
         const UnaffectedMetrics *unaffected = &report->pairs[i].unaffected;
         if (report->pairs[i].has_unaffected)
-            fprintf(out, "%-18s %11s %11s %9s %9s\n", pair_name(&report->pairs[i], name),
+            fprintf(out, "%-18s %11s %11s %9s %9s %9s\n", pair_name(&report->pairs[i], name),
                     summary_count(unaffected->pixels, pixels), summary_real(unaffected->max_abs, a),
-                    summary_real(unaffected->max_rel, b), summary_real(unaffected->p99_rel, c));
+                    summary_real(unaffected->max_rel, b), summary_real(unaffected->p99_rel, c),
+                    summary_real(unaffected->p999_rel, d));
     }
 }
 
@@ -95,6 +96,33 @@ static void print_line(void (*summary)(const Threeway *, char *), const Threeway
     summary(report, line);
     if (line[0])
         fprintf(out, "%s\n", line);
+}
+
+/* What single precision may do, and what it does. */
+static void print_bounds(const Threeway *report, FILE *out)
+{
+    char name[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER], exceeded[SUMMARY_NUMBER];
+    char unbounded[SUMMARY_NUMBER], a[SUMMARY_NUMBER], b[SUMMARY_NUMBER], c[SUMMARY_NUMBER];
+    char d[SUMMARY_NUMBER], e[SUMMARY_NUMBER];
+    if (!report->pairs[1].has_bound)
+        return;
+    fprintf(out, "\n%-18s %11s %11s %9s %9s %9s %9s %13s %10s\n", "bound of single", "pixels",
+            "exceeded", "max e/b", "median e/b", "p99 e/b", "median", "p99", "unbounded");
+    for (int i = 1; i < 3; i++) {
+        const BoundMetrics *bound = &report->pairs[i].bound;
+        fprintf(out, "%-18s %11s %11s %9s %9s %9s %9s %13s %10s",
+                pair_name(&report->pairs[i], name), summary_count(bound->pixels, pixels),
+                summary_count(bound->exceeded, exceeded), summary_real(bound->max_ratio, a),
+                summary_real(bound->median_ratio, b), summary_real(bound->p99_ratio, c),
+                summary_real(bound->median, d), summary_real(bound->p99, e),
+                summary_count(bound->unbounded, unbounded));
+        if (bound->has_first)
+            fprintf(out, "  first exceeded: %d, %d", bound->first[0], bound->first[1]);
+        fputc('\n', out);
+    }
+    fprintf(out, "(truth's own rounding: at most %s in half of these pixels, %s in 99 of 100)\n",
+            summary_real(report->pairs[1].bound.rounding_median, a),
+            summary_real(report->pairs[1].bound.rounding_p99, b));
 }
 
 static void print_layers(const Threeway *report, FILE *out)
@@ -131,6 +159,7 @@ void report_table_print(const Threeway *report, FILE *out)
     for (int i = 0; i < 3; i++)
         print_buffers(&report->pairs[i], out);
     print_finals(report, out);
+    print_bounds(report, out);
     print_layers(report, out);
     print_times(report, out);
     fprintf(out, "\n%s\n", report->agree ? "AGREE" : "DIFFER");

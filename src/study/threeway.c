@@ -179,6 +179,10 @@ static Result compare_pairs(Run *run)
         if (!pair->has_unaffected)
             continue;
         Result result = metrics_unaffected(a, b, report->structure.same, &pair->unaffected);
+        const Frame *truth = &report->frames[RENDERER_TRUTH];
+        pair->has_bound = truth->bound.pixels != NULL;
+        if (result == RESULT_OK && pair->has_bound)
+            result = metrics_bound(a, truth, report->structure.same, &pair->bound);
         if (result != RESULT_OK)
             return result;
     }
@@ -343,6 +347,8 @@ void threeway_release_images(Threeway *report)
     for (int i = 0; i < RENDERER_COUNT; i++) {
         image_free(&report->frames[i].final);
         image_free(&report->frames[i].display);
+        image_free(&report->frames[i].bound);
+        image_free(&report->frames[i].rounding);
     }
     for (size_t i = 0; i < report->peel_count; i++) {
         image_free(&report->peels[i].accum);

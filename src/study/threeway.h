@@ -20,6 +20,8 @@ typedef struct PairReport {
     FinalMetrics final;
     bool has_unaffected; /* pairs with truth */
     UnaffectedMetrics unaffected;
+    bool has_bound; /* pairs with truth, where desc asks for bounds */
+    BoundMetrics bound;
 } PairReport;
 
 /* Counts of how ref's fragments differ from truth's. */

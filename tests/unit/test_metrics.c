@@ -148,6 +148,7 @@ START_TEST(test_percentile)
         ck_assert_int_eq(metrics_unaffected(&image_a, &image_b, mask, &metrics), RESULT_OK);
         ck_assert_uint_eq(metrics.pixels, (uint64_t)rows[i].pixels);
         ck_assert_double_eq(metrics.p99_rel, rows[i].rank * 0x1p-10);
+        ck_assert_double_eq(metrics.p999_rel, rows[i].pixels * 0x1p-10);
         ck_assert_double_eq(metrics.max_rel, rows[i].pixels * 0x1p-10);
         memset(a, 0, sizeof a);
     }
@@ -199,6 +200,42 @@ START_TEST(test_background)
 }
 END_TEST
 
+/* Errors within, at and beyond their bounds; pixels without bound or in another order. */
+START_TEST(test_bound)
+{
+    float a[6][4] = {{1, 0, 0, 1}, {2, 0, 0, 1}, {0, 4, 0, 1},
+                     {9, 0, 0, 1}, {9, 0, 0, 1}, {NAN, 0, 0, 1}};
+    float b[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {0, 2, 0, 1},
+                     {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}};
+    float most[6][4] = {{0, 0, 0, 0}, {4, 0, 0, 0},        {0, 2, 0, 0},
+                        {8, 0, 0, 0}, {INFINITY, 0, 0, 0}, {1, 0, 0, 0}};
+    float own[6][4] = {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}, {1, 2, 0, 0}, {0}, {0, 0, 0, 1}};
+    const uint8_t same[6] = {STRUCTURE_SAME,    STRUCTURE_SAME, STRUCTURE_SAME,
+                             STRUCTURE_DIFFERS, STRUCTURE_SAME, STRUCTURE_EMPTY};
+    Image ref = image_of(6, 1, a[0]);
+    Frame truth = {.final = image_of(6, 1, b[0]),
+                   .bound = image_of(6, 1, most[0]),
+                   .rounding = image_of(6, 1, own[0])};
+    BoundMetrics metrics;
+    ck_assert_int_eq(metrics_bound(&ref, &truth, same, &metrics), RESULT_OK);
+    ck_assert_uint_eq(metrics.pixels, 4);
+    ck_assert_uint_eq(metrics.exceeded, 0);
+    ck_assert_uint_eq(metrics.unbounded, 1);
+    ck_assert_double_eq(metrics.max_ratio, 1.0);
+    ck_assert_double_eq(metrics.median_ratio, 0.0);
+    ck_assert_double_eq(metrics.p99_ratio, 1.0);
+    ck_assert_double_eq(metrics.median, 2.0);
+    ck_assert_double_eq(metrics.rounding_median, 1.0);
+    most[2][1] = nextafterf(2, 0);
+    a[0][2] = 1e-30f; /* any error is beyond a bound of 0 */
+    a[4][1] = NAN;
+    ck_assert_int_eq(metrics_bound(&ref, &truth, same, &metrics), RESULT_OK);
+    ck_assert_uint_eq(metrics.exceeded, 3);
+    ck_assert_int_eq(metrics.first[0], 0);
+    ck_assert_int_eq(metrics.first[1], 0);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("metrics");
@@ -211,6 +248,7 @@ int main(void)
     tcase_add_test(tcase, test_percentile);
     tcase_add_test(tcase, test_unaffected);
     tcase_add_test(tcase, test_background);
+    tcase_add_test(tcase, test_bound);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

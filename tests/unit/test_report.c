@@ -215,7 +215,7 @@ START_TEST(test_json)
         {"pairs/2/a", "\"gl\""},
         {"pairs/2/unaffected",
          "{\"pixels\":57000,\"occupied\":41000,\"max_abs\":1.25e-6,\"max_rel\":1.25e-6,"
-         "\"p99_rel\":3.5e-7}"},
+         "\"p99_rel\":3.5e-7,\"p999_rel\":7.5e-7}"},
         {"layers", "{\"max\":16,\"fragments\":345678,\"lost_to_ties\":9,"
                    "\"lost_to_pass_limit\":0,\"lost_to_overflow\":0,\"order_inversions\":3,"
                    "\"coverage_differs\":77,\"opaque_flips\":0,\"repeated\":0,\"overflowed\":0,"

@@ -1,0 +1,28 @@
+/* How far a pixel's colour may be from the truth's: of exact arithmetic (the truth's own rounding)
+ * and of the pipeline in single precision with desc's formats, for a pixel in which both see the
+ * same fragments in the same order.
+ *
+ * Rigorous: every step of the pipeline is bounded from the mesh's floats to the resolved colour
+ * (single.h, bound_texture.h, radiance_bound.h, bound_store.h). Infinite where nothing can be said:
+ * a piece of a triangle so thin that snapping may turn it, a highlight whose denominator may be 0
+ * in single precision. */
+#ifndef PEEL_REF_TRUTH_BOUND_H
+#define PEEL_REF_TRUTH_BOUND_H
+
+#include "ref/truth/bounded.h"
+#include "ref/truth/fragments.h"
+#include "ref/truth/radiance_bound.h"
+
+/* What the lighting pass has of a fragment: interpolated and, but in forward methods, stored in the
+ * G-buffer. (x, y): its pixel, y up. */
+void bound_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
+                   BoundedSurface *surface);
+
+/* Puts a fragment behind rgba, colour so far and transmittance: (0, 0, 0, 1) to begin with. */
+void bound_blend(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
+                 Bounded rgba[4]);
+
+/* Linear RGB over the background and coverage, from the above. */
+void bound_resolve(const View *view, PixelFormat accum, Bounded rgba[4]);
+
+#endif
