@@ -67,10 +67,11 @@ for choice in '--depth d24' '--depth d16' '--accum rgba16f' '--accum rgba16' '--
 done
 exits 2 'the raw test with 16 bits repeats layers and loses others' \
     "$peel" compare tutorial --size 64x36 --tolerance 1 --peel-test raw --depth d16
-"$peel" methods | sed -n 's/^\([a-z][-a-z]*\) .*/\1/p' >methods
-expect 'methods' test "$(wc -l <methods)" = 10
-# The one with 8-bit materials differs from truth: those behind it must be there all the same.
-exits 2 'every method' "$peel" compare chain.gltf --size 33x17 --lights 1 --method all --json all.json
+"$peel" methods | sed -n 's/^\([a-z][-a-z]*\) .*/\1/p' >names
+expect 'methods' test "$(wc -l <names)" = 10
+# The one with 8-bit materials differs more from truth: those behind it must be there all the same.
+exits 2 'every method' "$peel" compare chain.gltf --size 33x17 --lights 1 --method all \
+    --tolerance 1e-4 --json all.json
 exits 0 'every method, with room' "$peel" compare chain.gltf --size 33x17 --lights 1 --method all \
     --tolerance 1 --sort triangles --weight 7 --nodes-per-pixel 40 --post edges --bias 0.0001 \
     --shading phong
@@ -97,7 +98,7 @@ while read -r method; do
     for name in opaque.depth $names accum display; do
         has "trace of $method" info "\"$name\""
     done
-done <methods
+done <names
 
 exits 0 'report and JSON' "$peel" compare chain.gltf --size 64x36 --passes 1 --json j.json \
     --report report/of/this
@@ -111,8 +112,6 @@ exits 0 'all methods, report and JSON' "$peel" compare chain.gltf --size 64x36 -
 has 'JSON of all methods' all.json '"agree": true'
 has 'report of all methods' methods/of/this/index.html \
     'peel compare chain.gltf --size 64x36 --method all'
-"$peel" methods | sed -n 's/^\([a-z][a-z-]*\) .*/\1/p' >names
-expect 'the table of methods' test "$(wc -l <names)" -ge 10
 while read -r name; do
     has 'JSON of all methods' all.json "\"method\": \"$name\""
     has 'report of all methods' methods/of/this/index.html "<h3><a href=\"$name/index.html\">"
