@@ -20,6 +20,7 @@ static const Command commands[] = {
     {"render", "one renderer to PNG or EXR, with --trace every buffer", cmd_render},
     {"compare", "all three renderers; table, JSON, report", cmd_compare},
     {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
+    {"hard", "the hard cases, each against its own expectation", cmd_hard},
     {"methods", "list the methods of --method", cmd_methods},
     {"scenes", "list the built-in scenes, or write one as glTF", cmd_scenes},
 };
