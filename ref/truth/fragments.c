@@ -1,3 +1,5 @@
+#define _GNU_SOURCE /* qsort_r */
+
 #include "ref/truth/fragments.h"
 
 #include "base/memory.h"
@@ -10,6 +12,11 @@ enum {
     INSERTION_MAX = 24
 };
 
+/* Corners known to within a sixteenth of a subpixel do not strain the slack of coverage.h; with
+ * worse ones no verdict of it is certain. */
+#define SNAPPING_ERROR_MAX (1.0 / (16 * 256))
+#define SLACK_ALL          (INT64_MAX / 4)
+
 /* One triangle on its way into a tile. */
 typedef struct Raster {
     const Soup *soup;
@@ -20,41 +27,44 @@ typedef struct Raster {
     uint32_t triangle;
     const Corner *corners[3];
     Coverage coverage;
+    Bound bound; /* over what of the tile it may cover */
 } Raster;
 
 /* ---- order ---------------------------------------------------------------------------------- */
 
-static bool in_front(const Fragment *a, const Fragment *b, DepthFunc func)
+typedef struct Sorting {
+    Order *order;
+    DepthFunc func;
+} Sorting;
+
+static int compare_fragments(const void *a, const void *b, void *context)
 {
-    if (a->depth != b->depth)
-        return a->depth < b->depth;
-    return func == DEPTH_LEQUAL ? a->triangle > b->triangle : a->triangle < b->triangle;
+    const Sorting *sorting = context;
+    return order_compare_all(sorting->order, a, b, sorting->func);
 }
 
-static int compare_less(const void *a, const void *b)
-{
-    return in_front(a, b, DEPTH_LESS) ? -1 : in_front(b, a, DEPTH_LESS);
-}
-
-static int compare_lequal(const void *a, const void *b)
-{
-    return in_front(a, b, DEPTH_LEQUAL) ? -1 : in_front(b, a, DEPTH_LEQUAL);
-}
-
-static void sort_pixel(Fragment *fragments, size_t count, DepthFunc func)
+static void sort_pixel(Order *order, Fragment *fragments, size_t count, DepthFunc func)
 {
     if (count > INSERTION_MAX) {
-        qsort(fragments, count, sizeof *fragments,
-              func == DEPTH_LEQUAL ? compare_lequal : compare_less);
+        Sorting sorting = {order, func};
+        qsort_r(fragments, count, sizeof *fragments, compare_fragments, &sorting);
         return;
     }
     for (size_t i = 1; i < count; i++) {
         Fragment fragment = fragments[i];
         size_t at = i;
-        for (; at > 0 && in_front(&fragment, &fragments[at - 1], func); at--)
+        for (; at > 0 && order_compare_all(order, &fragment, &fragments[at - 1], func) < 0; at--)
             fragments[at] = fragments[at - 1];
         fragments[at] = fragment;
     }
+}
+
+static uint64_t count_ties(Order *order, const Fragment *fragments, size_t count)
+{
+    uint64_t ties = 0;
+    for (size_t i = 1; i < count; i++)
+        ties += order_compare(order, &fragments[i - 1], &fragments[i]) == 0;
+    return ties;
 }
 
 /* Puts the list in order: counts per pixel, distributes, sorts each pixel. */
@@ -78,8 +88,9 @@ static Result sort_list(TileFragments *fragments, DepthFunc func)
     fragments->deepest = 0;
     for (int pixel = 0; pixel < FRAGMENTS_TILE_PIXELS; pixel++) {
         uint32_t count = first[pixel + 1] - first[pixel];
-        if (count > 1)
-            sort_pixel(&fragments->sorted[first[pixel]], count, func);
+        Fragment *pixel_fragments = &fragments->sorted[first[pixel]];
+        sort_pixel(&fragments->order, pixel_fragments, count, func);
+        fragments->ties += count_ties(&fragments->order, pixel_fragments, count);
         fragments->deepest = count > fragments->deepest ? count : fragments->deepest;
     }
     return RESULT_OK;
@@ -109,33 +120,52 @@ static Result append(TileFragments *fragments, Fragment fragment)
 }
 
 /* An opaque fragment against the nearest so far; the depth buffer was cleared to 1. */
-static void depth_test(Fragment *nearest, Fragment fragment, DepthFunc func)
+static void depth_test(Order *order, Fragment *nearest, const Fragment *fragment, DepthFunc func)
 {
-    bool passes = nearest->triangle == FRAGMENTS_NO_TRIANGLE
-                      ? func == DEPTH_LEQUAL || fragment.depth < 1.0
-                      : in_front(&fragment, nearest, func);
-    if (passes)
-        *nearest = fragment;
+    int depth = nearest->triangle == FRAGMENT_NO_TRIANGLE
+                    ? order_compare(order, fragment, nearest) - (func == DEPTH_LEQUAL)
+                    : order_compare_all(order, fragment, nearest, func);
+    if (depth < 0)
+        *nearest = *fragment;
+}
+
+/* A transparent fragment against the opaque ones of either coverage. */
+static Result add_transparent(TileFragments *fragments, const Fragment *fragment, bool snapped,
+                              bool exact)
+{
+    const Fragment *opaque = &fragments->opaque[fragment->pixel];
+    const Fragment *exact_opaque = &fragments->exact_opaque[fragment->pixel];
+    bool same = opaque->triangle == exact_opaque->triangle;
+    if (snapped || same) {
+        int depth = order_compare(&fragments->order, fragment, opaque);
+        fragments->ties += snapped && depth == 0 && opaque->triangle != FRAGMENT_NO_TRIANGLE;
+        snapped = snapped && depth < 0;
+        exact = exact && (depth < 0 || !same);
+    }
+    if (exact && !same)
+        exact = order_compare(&fragments->order, fragment, exact_opaque) < 0;
+    fragments->coverage_differs += fragment->unsure && (snapped || exact);
+    return snapped ? append(fragments, *fragment) : RESULT_OK;
 }
 
 /* snapped, exact: whether either coverage has the fragment. */
-static Result add_fragment(const Raster *raster, Fragment fragment, bool snapped, bool exact)
+static Result add_fragment(const Raster *raster, Fragment *fragment, bool snapped, bool exact)
 {
     TileFragments *fragments = raster->fragments;
-    Fragment *opaque = &fragments->opaque[fragment.pixel];
-    Fragment *exact_opaque = &fragments->exact_opaque[fragment.pixel];
-    fragment.unsure = snapped != exact;
-    if (!raster->draw->transparent) {
-        if (snapped)
-            depth_test(opaque, fragment, raster->desc->depth_func);
-        if (exact)
-            depth_test(exact_opaque, fragment, raster->desc->depth_func);
-        return RESULT_OK;
-    }
-    snapped = snapped && fragment.depth < opaque->depth;
-    exact = exact && fragment.depth < exact_opaque->depth;
-    fragments->coverage_differs += fragment.unsure && (snapped || exact);
-    return snapped ? append(fragments, fragment) : RESULT_OK;
+    Fragment *opaque = &fragments->opaque[fragment->pixel];
+    Fragment *exact_opaque = &fragments->exact_opaque[fragment->pixel];
+    fragment->unsure = snapped != exact;
+    if (raster->draw->transparent)
+        return add_transparent(fragments, fragment, snapped, exact);
+    DepthFunc func = raster->desc->depth_func;
+    bool same = snapped && exact && opaque->triangle == exact_opaque->triangle;
+    if (snapped)
+        depth_test(&fragments->order, opaque, fragment, func);
+    if (same)
+        *exact_opaque = *opaque;
+    else if (exact)
+        depth_test(&fragments->order, exact_opaque, fragment, func);
+    return RESULT_OK;
 }
 
 /* Whether a masked material's texture has a hole there. */
@@ -158,19 +188,23 @@ static Result raster_pixel(const Raster *raster, int x, int y)
     ExactPoint point;
     exact_at(raster->corners, x, y, &point);
     const Draw *draw = raster->draw;
-    bool snapped_back = clockwise != draw->flipped;
-    bool exact_back = at == COVERAGE_INSIDE ? snapped_back : point.clockwise != draw->flipped;
+    Order *order = &raster->fragments->order;
+    bool inside = true, exact_clockwise = clockwise;
+    if (at != COVERAGE_INSIDE)
+        inside =
+            order_inside(order, &raster->bound, &point, raster->triangle, x, y, &exact_clockwise);
+    bool snapped_back = clockwise != draw->flipped, exact_back = exact_clockwise != draw->flipped;
     bool snapped = at >= COVERAGE_INSIDE_CLOSE && !(draw->cull_back && snapped_back);
-    bool exact = (at == COVERAGE_INSIDE || point.inside) && !(draw->cull_back && exact_back);
+    bool exact = inside && !(draw->cull_back && exact_back);
     if ((!snapped && !exact) || is_cut_out(raster, point.weight))
         return RESULT_OK;
     const TileFragments *fragments = raster->fragments;
     int row = raster->soup->view->height - 1 - y - fragments->y;
-    Fragment fragment = {.depth = point.depth,
-                         .triangle = raster->triangle,
+    Fragment fragment = {.triangle = raster->triangle,
                          .pixel = (uint16_t)(row * TRACE_TILE + x - fragments->x),
                          .back = snapped ? snapped_back : exact_back};
-    return add_fragment(raster, fragment, snapped, exact);
+    order_set_depth(order, &raster->bound, raster->corners, &point, &fragment);
+    return add_fragment(raster, &fragment, snapped, exact);
 }
 
 static Result raster_triangle(Raster *raster)
@@ -192,6 +226,9 @@ static Result raster_triangle(Raster *raster)
     y_high = coverage->y_high < y_high ? coverage->y_high : y_high;
     if (x_low > x_high || y_low > y_high || coverage_misses(coverage, x_low, y_low, x_high, y_high))
         return RESULT_OK;
+    bound_setup(vertices, (BoundRect){x_low, x_high, y_low, y_high}, &raster->bound);
+    if (!(raster->bound.snapping_error < SNAPPING_ERROR_MAX))
+        coverage->slack = SLACK_ALL;
     Result result = RESULT_OK;
     for (int y = y_low; y <= y_high && result == RESULT_OK; y++)
         for (int x = x_low; x <= x_high && result == RESULT_OK; x++)
@@ -224,9 +261,13 @@ static void begin_tile(const Soup *soup, uint32_t tile, TileFragments *fragments
     fragments->width = right < TRACE_TILE ? right : TRACE_TILE;
     fragments->height = below < TRACE_TILE ? below : TRACE_TILE;
     fragments->count = 0;
-    fragments->coverage_differs = 0;
+    fragments->coverage_differs = fragments->ties = 0;
+    fragments->order.soup = soup;
+    fragments->order.x = fragments->x;
+    fragments->order.y = fragments->y;
+    Fragment none = {.depth = 1.0, .triangle = FRAGMENT_NO_TRIANGLE, .is_fixed = true};
     for (int pixel = 0; pixel < FRAGMENTS_TILE_PIXELS; pixel++) {
-        const Fragment none = {1.0, FRAGMENTS_NO_TRIANGLE, (uint16_t)pixel, false, false};
+        none.pixel = (uint16_t)pixel;
         fragments->opaque[pixel] = fragments->exact_opaque[pixel] = none;
     }
 }
@@ -249,6 +290,7 @@ Result fragments_collect(const Soup *soup, const RenderDesc *desc, uint32_t tile
 
 void fragments_free(TileFragments *fragments)
 {
+    order_free(&fragments->order);
     free(fragments->list);
     free(fragments->sorted);
     fragments->list = fragments->sorted = NULL;

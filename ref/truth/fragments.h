@@ -1,28 +1,17 @@
 /* Every fragment of one tile: the nearest opaque one of each pixel, and the transparent ones in
- * front of it, sorted.
- *
- * Order: by depth, then by primitive id: with DEPTH_LESS the earlier triangle is in front, with
- * DEPTH_LEQUAL the later. Nothing is shaded here. */
+ * front of it, sorted: all by order.h. Nothing is shaded here. */
 #ifndef PEEL_REF_TRUTH_FRAGMENTS_H
 #define PEEL_REF_TRUTH_FRAGMENTS_H
 
-#include "ref/truth/soup.h"
+#include "ref/truth/order.h"
 
 enum {
     FRAGMENTS_TILE_PIXELS = TRACE_TILE * TRACE_TILE
 };
-#define FRAGMENTS_NO_TRIANGLE UINT32_MAX
-
-typedef struct Fragment {
-    double depth;      /* window depth in [0, 1] */
-    uint32_t triangle; /* in the soup's numbering; FRAGMENTS_NO_TRIANGLE: no fragment, depth 1 */
-    uint16_t pixel;    /* in the tile: row · TRACE_TILE + column, row 0 at the top */
-    bool back;         /* a back face, after mirroring */
-    bool unsure;       /* snapped and unsnapped coverage disagree here */
-} Fragment;
 
 /* One worker's scratch: reused from tile to tile. Zeroed is valid, but for limit_bytes. */
 typedef struct TileFragments {
+    Order order;                                  /* its counts: of all tiles so far */
     size_t limit_bytes;                           /* for the lists below */
     int x, y, width, height;                      /* the tile in the image, y from the top */
     Fragment opaque[FRAGMENTS_TILE_PIXELS];       /* the nearest opaque fragment, one per pixel */
@@ -34,6 +23,7 @@ typedef struct TileFragments {
     uint32_t first[FRAGMENTS_TILE_PIXELS + 1];
     uint32_t deepest;          /* transparent fragments in the deepest pixel */
     uint64_t coverage_differs; /* see truth.h */
+    uint64_t ties;             /* see truth.h */
 } TileFragments;
 
 /* Collects and sorts tile `tile` (row · soup->tile_columns + column). NO_MEMORY when the lists

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "ref/truth/coverage.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum {
@@ -112,32 +113,68 @@ void soup_material(const Soup *soup, uint32_t triangle, const double weight[3], 
 
 /* ---- vertices ------------------------------------------------------------------------------- */
 
+/* Clip coordinates of a point in view space. Each operation errs by at most EXACT_ROUNDING times
+ * its result, and products of floats are exact; no product comes near the least normal number,
+ * being a multiple of 2^-447. */
+static void project(const View *view, const double position[3], const double position_error[3],
+                    double clip[4], double error[4])
+{
+    for (int row = 0; row < 4; row++) {
+        double rounded = 0.0;
+        clip[row] = view->projection[12 + row];
+        error[row] = 0.0;
+        for (int column = 0; column < 3; column++) {
+            double factor = view->projection[4 * column + row];
+            double product = factor * position[column];
+            clip[row] += product;
+            rounded += fabs(product) + fabs(clip[row]);
+            error[row] += fabs(factor) * position_error[column];
+        }
+        error[row] += EXACT_ROUNDING * rounded;
+    }
+    /* The other clip spaces are brought to −w … w, near to far. */
+    if (view->depth_range == DEPTH_RANGE_GL)
+        return;
+    double sign = view->depth_range == DEPTH_RANGE_REVERSED ? -1.0 : 1.0;
+    clip[2] = sign * (2.0 * clip[2] - clip[3]);
+    error[2] = 2.0 * error[2] + error[3] + EXACT_ROUNDING * fabs(clip[2]);
+}
+
+/* A sum of two clip coordinates, times half of the viewport's size. */
+static double to_window(double a, double b, double a_error, double b_error, int size, double *error)
+{
+    double half = 0.5 * size, sum = a + b, window = sum * half;
+    *error =
+        (a_error + b_error + EXACT_ROUNDING * fabs(sum)) * half + EXACT_ROUNDING * fabs(window);
+    return window;
+}
+
 static SoupVertex transform(const View *view, const Draw *draw, const float *position,
                             const float *normal)
 {
     SoupVertex vertex;
+    double view_error[3], clip[4], error[4];
     for (int row = 0; row < 3; row++) {
-        double p = draw->model_view[12 + row], n = 0.0;
+        double p = draw->model_view[12 + row], n = 0.0, rounded = 0.0;
         for (int column = 0; column < 3; column++) {
             p += (double)draw->model_view[4 * column + row] * position[column];
+            rounded += fabs(p);
             n += (double)draw->normal_matrix[3 * column + row] * normal[column];
         }
         vertex.position[row] = p;
         vertex.normal[row] = n;
+        view_error[row] = EXACT_ROUNDING * rounded;
     }
-    double clip[4];
-    for (int row = 0; row < 4; row++) {
-        clip[row] = view->projection[12 + row];
-        for (int column = 0; column < 3; column++)
-            clip[row] += view->projection[4 * column + row] * vertex.position[column];
-    }
-    /* The other clip spaces are brought to −w … w, near to far; exact but for the last bits. */
-    if (view->depth_range == DEPTH_RANGE_ZERO_ONE)
-        clip[2] = 2.0 * clip[2] - clip[3];
-    else if (view->depth_range == DEPTH_RANGE_REVERSED)
-        clip[2] = clip[3] - 2.0 * clip[2];
-    vertex.corner = (Corner){(clip[0] + clip[3]) * (0.5 * view->width),
-                             (clip[1] + clip[3]) * (0.5 * view->height), clip[2], clip[3]};
+    project(view, vertex.position, view_error, clip, error);
+    Corner *corner = &vertex.corner, *bound = &vertex.error;
+    corner->x = to_window(clip[0], clip[3], error[0], error[3], view->width, &bound->x);
+    corner->y = to_window(clip[1], clip[3], error[1], error[3], view->height, &bound->y);
+    corner->z = clip[2];
+    corner->w = clip[3];
+    bound->x *= EXACT_SLACK;
+    bound->y *= EXACT_SLACK;
+    bound->z = error[2] * EXACT_SLACK;
+    bound->w = error[3] * EXACT_SLACK;
     return vertex;
 }
 

@@ -1,8 +1,8 @@
 /* The scene as one list of triangles in window space, binned to screen tiles.
  *
  * Corners are computed in double from the mesh's floats and the view's float matrices, taken as
- * exact numbers. Triangles are numbered from 0 through all draws in order; that order is the order
- * of primitive ids. */
+ * exact numbers, and carry a bound of their rounding (plane.h has them without). Triangles are
+ * numbered from 0 through all draws in order; that order is the order of primitive ids. */
 #ifndef PEEL_REF_TRUTH_SOUP_H
 #define PEEL_REF_TRUTH_SOUP_H
 
@@ -14,6 +14,7 @@
 
 typedef struct SoupVertex {
     Corner corner;
+    Corner error;       /* proven: each number of corner errs by at most this */
     double position[3]; /* view space */
     double normal[3];   /* view space, not normalised */
 } SoupVertex;

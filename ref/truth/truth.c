@@ -16,7 +16,7 @@ typedef struct WorkerState {
     TileFragments fragments;
     uint32_t layer[FRAGMENTS_TILE_PIXELS]; /* one traced rectangle */
     uint32_t max;
-    uint64_t fragment_count, coverage_differs;
+    uint64_t fragment_count, coverage_differs, ties;
 } WorkerState;
 
 typedef struct Render {
@@ -80,7 +80,7 @@ static void composite(const Render *render, const TileFragments *tile, int pixel
     for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1] && rgba[3] > 0.0; i++)
         blend_fragment(render, &tile->sorted[i], x, y, rgba);
     const Fragment *opaque = &tile->opaque[pixel];
-    if (opaque->triangle != FRAGMENTS_NO_TRIANGLE && rgba[3] > 0.0)
+    if (opaque->triangle != FRAGMENT_NO_TRIANGLE && rgba[3] > 0.0)
         blend_fragment(render, opaque, x, y, rgba);
     for (int i = 0; i < 3; i++)
         rgba[i] += rgba[3] * render->view->background[i];
@@ -130,7 +130,7 @@ static Result put_layer(Render *render, const TileFragments *tile, const char *n
 
 static uint32_t traced_id(const Soup *soup, uint32_t triangle)
 {
-    return triangle == FRAGMENTS_NO_TRIANGLE ? UINT32_MAX : soup_primitive(soup, triangle);
+    return triangle == FRAGMENT_NO_TRIANGLE ? UINT32_MAX : soup_primitive(soup, triangle);
 }
 
 static Result trace_tile(Render *render, WorkerState *worker)
@@ -167,7 +167,21 @@ static Result tile_task(void *context, uint32_t index, int worker_index)
     worker->max = tile->deepest > worker->max ? tile->deepest : worker->max;
     worker->fragment_count += tile->count;
     worker->coverage_differs += tile->coverage_differs;
+    worker->ties += tile->ties;
     return render->trace ? trace_tile(render, worker) : RESULT_OK;
+}
+
+static void add_counts(const WorkerState *worker, LayerStats *layers)
+{
+    const OrderCounts *order = &worker->fragments.order.counts;
+    layers->max = worker->max > layers->max ? worker->max : layers->max;
+    layers->fragments += worker->fragment_count;
+    layers->coverage_differs += worker->coverage_differs;
+    layers->comparisons += order->comparisons;
+    layers->exact_comparisons += order->exact_comparisons;
+    layers->exact_coverage += order->exact_coverage;
+    layers->ties += worker->ties;
+    layers->undecided += order->undecided;
 }
 
 /* Runs the tiles with one scratch per worker, within what is left of limit bytes. */
@@ -195,10 +209,7 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
     frame->buffer_bytes = fixed;
     for (size_t i = 0; i < threads && render->workers[i]; i++) {
         WorkerState *worker = render->workers[i];
-        LayerStats *layers = &frame->layers;
-        layers->max = worker->max > layers->max ? worker->max : layers->max;
-        layers->fragments += worker->fragment_count;
-        layers->coverage_differs += worker->coverage_differs;
+        add_counts(worker, &frame->layers);
         frame->buffer_bytes += fragments_bytes(&worker->fragments) - sizeof worker->fragments;
         fragments_free(&worker->fragments);
         free(worker);

@@ -10,8 +10,8 @@
  * mask's holes, and where alpha crosses SHADING_ALPHA_TEST, the picture jumps; a pixel whose centre
  * lies within single precision of one may be on the other side of it in the pipelines.
  *
- * It does not resolve depths closer than double precision: surfaces that coincide only in exact
- * arithmetic, not in double, come in the order of their rounding (exact.h states its size).
+ * The order is certain: depths are compared as exact numbers of the floats that all renderers share
+ * (plane.h, order.h), and equal ones are equal by proof. What is shaded is computed in double.
  * Source: Carpenter, "The A-buffer, an Antialiased Hidden Surface Method", SIGGRAPH 1984. */
 #ifndef PEEL_REF_TRUTH_H
 #define PEEL_REF_TRUTH_H
@@ -29,7 +29,11 @@
  * the picture, and unsnapped coverage (the exact triangle within the view volume, same tie rule)
  * disagree, and the fragment matters where it exists: it is transparent and in front of the
  * nearest opaque fragment, or is that fragment. A pixel that snapping hands from one triangle to
- * its neighbour counts twice. */
+ * its neighbour counts twice.
+ *
+ * out->layers.ties counts transparent fragments whose depth is exactly that of the fragment in front
+ * of them at their pixel, or that are hidden by an opaque fragment at exactly their depth.
+ * comparisons and exact_comparisons count what it took; drawing order changes them. */
 Result truth_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out);
 
 #endif

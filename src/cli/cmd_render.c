@@ -157,6 +157,14 @@ static void print_summary(const RenderCommand *command, const Frame *frame)
                "%llu pixels\n",
                frame->residual_max, (unsigned long long)frame->layers.lost_to_pass_limit,
                (unsigned long long)frame->residual_pixels);
+    const LayerStats *layers = &frame->layers;
+    if (command->renderer == RENDERER_TRUTH)
+        printf(
+            "order: %llu comparisons, %llu of them in exact arithmetic, %llu ties, %llu undecided; "
+            "unsnapped coverage: %llu in exact arithmetic\n",
+            (unsigned long long)layers->comparisons, (unsigned long long)layers->exact_comparisons,
+            (unsigned long long)layers->ties, (unsigned long long)layers->undecided,
+            (unsigned long long)layers->exact_coverage);
 }
 
 int cmd_render(int argc, char **argv)

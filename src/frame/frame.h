@@ -18,6 +18,11 @@ typedef struct LayerStats {
     uint64_t repeated;           /* peeled again at the depth of the previous peel */
     uint64_t coverage_differs;   /* truth: fragments that exact, unsnapped coverage would change */
     uint64_t lost_to_overflow;   /* a list had no room; some may be behind the opaque depth */
+    uint64_t comparisons;        /* truth: of two fragments' depths */
+    uint64_t exact_comparisons;  /* of those, decided in exact arithmetic */
+    uint64_t ties;               /* truth: fragments at exactly the depth of the one in front */
+    uint64_t undecided;          /* truth: comparisons without a result; 0 */
+    uint64_t exact_coverage;     /* truth: unsnapped coverage decided in exact arithmetic */
     uint64_t overflowed;         /* pixels with a sum that left its format's range */
 } LayerStats;
 

@@ -263,6 +263,10 @@ void summary_layers(const Threeway *report, SummaryLayer out[SUMMARY_LAYERS])
         {"overflowed", "pixels with a sum that left its format's range", layers->overflowed},
         {"set_differs", "fragments that only one side has, ties and limit apart",
          structure->set_differs},
+        {"exact_comparisons", "of truth's comparisons of depths, in exact arithmetic",
+         layers->exact_comparisons},
+        {"ties", "fragments at exactly the depth of the one in front, by proof", layers->ties},
+        {"undecided", "of truth's comparisons, without a result", layers->undecided},
     };
     memcpy(out, rows, sizeof rows);
 }

@@ -72,7 +72,7 @@ typedef struct SummaryLayer {
 } SummaryLayer;
 
 enum {
-    SUMMARY_LAYERS = 10
+    SUMMARY_LAYERS = 13
 };
 void summary_layers(const Threeway *report, SummaryLayer out[SUMMARY_LAYERS]);
 

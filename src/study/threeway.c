@@ -147,6 +147,10 @@ static Result compare_structure(Run *run)
     structure->layers.max = truth->max;
     structure->layers.fragments = truth->fragments;
     structure->layers.coverage_differs = truth->coverage_differs;
+    structure->layers.comparisons = truth->comparisons;
+    structure->layers.exact_comparisons = truth->exact_comparisons;
+    structure->layers.ties = truth->ties;
+    structure->layers.undecided = truth->undecided;
     structure->order_inversions = counts.order_inversions;
     structure->opaque_flips = counts.opaque_flips;
     if (!structure->known)

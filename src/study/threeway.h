@@ -24,7 +24,7 @@ typedef struct PairReport {
 /* Counts of how ref's fragments differ from truth's. */
 typedef struct StructureReport {
     bool known;                /* the method traces its layers; else the counts below are 0 */
-    LayerStats layers;         /* ref's counts; max, fragments, coverage_differs from truth */
+    LayerStats layers;         /* ref's counts; truth's where only truth counts, max, fragments */
     uint64_t order_inversions; /* adjacent fragments that truth orders the other way */
     uint64_t opaque_flips;     /* pixels whose nearest opaque triangle differs */
     uint64_t set_differs;      /* fragments that only one side has, ties and limit apart */

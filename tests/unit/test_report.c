@@ -155,7 +155,8 @@ START_TEST(test_json)
          "\"p99_rel\":3.5e-7}"},
         {"layers", "{\"max\":16,\"fragments\":345678,\"lost_to_ties\":9,"
                    "\"lost_to_pass_limit\":0,\"order_inversions\":3,\"coverage_differs\":77,"
-                   "\"opaque_flips\":0,\"repeated\":0,\"overflowed\":0,\"set_differs\":0}"},
+                   "\"opaque_flips\":0,\"repeated\":0,\"overflowed\":0,\"set_differs\":0,"
+                   "\"exact_comparisons\":21,\"ties\":7,\"undecided\":0}"},
         {"residual", "{\"max\":0.0,\"pixels\":0}"},
     };
     const char *path = scratch_path("report.json");
