@@ -53,16 +53,17 @@ Result hard_scenes_behind_the_eye(Scene *out)
     return builder_finish(&builder, out);
 }
 
-/* Panes in the near plane, in the far plane, one step inside each, and one through both. */
+/* Panes in the near plane, in the far plane, a little inside each, and one through both. With
+ * these planes the projection's floats are exact, and so are the depths 0 and 1. */
 Result hard_scenes_near_and_far_planes(Scene *out)
 {
     static const double through[4][3] = {
-        {-0.5, -0.5, -0.5}, {0.0, -24.0, -72.0}, {0.0, 24.0, -72.0}, {-0.5, 0.5, -0.5}};
+        {-0.5, -0.5, -0.5}, {0.0, -1.5, -4.5}, {0.0, 1.5, -4.5}, {-0.5, 0.5, -0.5}};
     static const HardQuad quads[4] = {{0.0625, 0.5, 0.75, 0.875, -1.0},
                                       {0.0625, 0.0625, 0.75, 0.4375, -0x1.000002p+0},
-                                      {4.0, -28.0, 48.0, -4.0, -64.0},
-                                      {4.0, -56.0, 48.0, -32.0, -0x1.fffffep+5}};
-    Builder builder = hard_kit_begin("near_and_far_planes", 1.0, 64.0);
+                                      {0.1875, -1.3125, 2.25, -0.1875, -3.0},
+                                      {0.1875, -2.625, 2.25, -1.5, -0x1.7ffffp+1}};
+    Builder builder = hard_kit_begin("near_and_far_planes", 1.0, 3.0);
     for (int i = 0; i < 4; i++)
         hard_kit_put(&builder, hard_kit_quads(&builder, &quads[i], 1),
                      hard_kit_tint(&builder, i, 0.5f));

@@ -25,10 +25,15 @@ typedef struct HardCount {
 
 /* A pixel whose value is known by hand. */
 typedef struct HardPixel {
-    int x, y; /* from the top left; 0, 0: there is none */
+    int x, y; /* from the top left */
     double value[4];
-    double tolerance; /* of ref, relative to max(1, value); truth must be within 1e-6 */
+    double tolerance; /* of ref, relative to max(1, value); 0: there is no such pixel */
+    bool format_only; /* what the stored format makes of it; else truth has it, too, within 1e-6 */
 } HardPixel;
+
+enum {
+    HARD_PIXELS = 3
+};
 
 /* Zero-initialised: no fragment is lost or out of place, and the error is within the bound that
  * hard_error_bound derives from method and formats. */
@@ -44,7 +49,8 @@ typedef struct HardExpect {
      * relative to max(1, value). 0: the derived bound; INFINITY: any. */
     double error;
     double error_from; /* and this at least: the case shows what it is there for */
-    HardPixel pixel;
+    HardPixel pixels[HARD_PIXELS];
+    bool race; /* a list overflows: gl's threads decide what it loses, so its bits are not ref's */
     /* Name of an earlier configuration of the case with the same image, bit for bit (or, after a
      * '!', with another image); NULL: nothing is expected. */
     const char *image;
@@ -63,11 +69,12 @@ enum {
 };
 
 typedef struct HardCase {
-    const char *name;    /* of its scene */
-    const char *ought;   /* what ought to happen: one or two sentences */
-    int size;            /* of the image's sides */
-    bool bright;         /* colours beyond 1, which unorm formats cannot hold: no bound for them */
-    double error;        /* greatest error in single precision; 0: 1e-4 */
+    const char *name;  /* of its scene */
+    const char *ought; /* what ought to happen: one or two sentences */
+    int size;          /* of the image's sides */
+    bool slow;         /* seconds each: only what shows something, and a pass limit in the slice */
+    bool bright;       /* colours beyond 1, which unorm formats cannot hold: no bound for them */
+    double error;      /* greatest error in single precision; 0: 1e-4 */
     HardCount fragments; /* transparent ones that truth sees; {0, 0}: any number */
     HardCount deepest;   /* layers of the deepest pixel; {0, 0}: any number */
     /* What depends on the depth format: the default's, which all peeling methods share, and those
@@ -87,8 +94,8 @@ typedef struct HardRow {
     double max_abs, rmse, error; /* ref against truth; error as in HardExpect */
     double bound;                /* what error may be */
     uint32_t max_ulp_gl, max_ulp_truth;
-    float pixel[2][4]; /* of ref and truth, where one is expected */
-    int image_like;    /* 1 + the row whose image is to be compared; 0: none */
+    float pixels[HARD_PIXELS][2][4]; /* of ref and truth, where one is expected */
+    int image_like;                  /* 1 + the row whose image is to be compared; 0: none */
     bool image_same;
     double time_ms; /* of all the renderings */
     bool pass;
@@ -109,7 +116,8 @@ typedef struct HardReport {
 const HardCase *hard_cases(size_t *count);
 const HardCase *hard_find(const char *name); /* NULL when there is none */
 
-/* The configurations of a case; of the slice for CI the first three at most. Returns how many. */
+/* The configurations of a case: the default, its own, the standard ones; of the slice for CI the
+ * first three at most. Returns how many. */
 size_t hard_configs(const HardCase *hard, bool slice, HardConfig out[HARD_CONFIGS]);
 
 /* How far ref may be from truth: what a method or the case allows in single precision, and two
