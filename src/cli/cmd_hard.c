@@ -15,6 +15,7 @@ typedef struct HardCommand {
     size_t count, capacity;
     const char *json, *report, *folder;
     bool list, slice;
+    char *line; /* the command, to be shown on the page */
 } HardCommand;
 
 enum {
@@ -126,15 +127,28 @@ static Result export_scenes(const HardCommand *command)
 /* Without names: all. */
 static Result choose_cases(HardCommand *command)
 {
-    size_t all;
+    size_t all, named = command->count;
     const HardCase *cases = hard_cases(&all);
-    for (size_t i = 0; command->count < all && i < all; i++) {
-        if (command->count != i)
-            break; /* some are named */
+    for (size_t i = 0; named == 0 && i < all; i++)
         if (add_case(cases[i].name, command))
             return RESULT_NO_MEMORY;
-    }
     return RESULT_OK;
+}
+
+/* What makes the page again. Without names: all. */
+static char *command_line(const HardCommand *command, bool all)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fprintf(out, "build/peel hard%s --report %s", command->slice ? " --ci" : "",
+            command->report ? command->report : "out");
+    for (size_t i = 0; i < command->count && !all; i++)
+        fprintf(out, " %s", command->cases[i]->name);
+    fclose(out);
+    return text;
 }
 
 static Result run_cases(const HardCommand *command, HardReport *reports, HardTotals *totals)
@@ -164,6 +178,10 @@ static Result examine(const HardCommand *command, HardTotals *totals)
         report_hard_print_totals(totals, stdout);
         fflush(stdout); /* before a --json /dev/stdout */
     }
+    if (result == RESULT_OK && command->json)
+        result = report_hard_json(reports, command->count, command->json);
+    if (result == RESULT_OK && command->report)
+        result = report_hard_html(reports, command->count, command->line, command->report);
     for (size_t i = 0; i < command->count; i++)
         hard_free(&reports[i]);
     free(reports);
@@ -179,10 +197,15 @@ int cmd_hard(int argc, char **argv)
         free(command.cases);
         return code && code != OPTIONS_HELPED ? code : command.list && !code ? list() : EXIT_AGREE;
     }
+    bool all = command.count == 0;
     Result result = choose_cases(&command);
+    command.line = command_line(&command, all);
+    if (result == RESULT_OK && !command.line)
+        result = result_fail(RESULT_NO_MEMORY, "out of memory");
     if (result == RESULT_OK)
         result = command.folder ? export_scenes(&command) : examine(&command, &totals);
     free(command.cases);
+    free(command.line);
     if (result != RESULT_OK)
         return options_fail(result);
     return totals.failed ? EXIT_DIFFER : EXIT_AGREE;
