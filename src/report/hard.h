@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* What came of all the cases that ran. */
+/* What came of all the cases that ran; rows differ where ref and gl must not. */
 typedef struct HardTotals {
     size_t cases, rows, failed, nonfinite_rows, differing_rows;
 } HardTotals;

@@ -17,6 +17,8 @@ Builder hard_kit_begin(const char *name, double near, double far)
                                   PIECES_PI / 2.0,
                                   pieces_float(near),
                                   isinf(far) ? far : pieces_float(far)});
+    /* A file without any light is given the default ones. */
+    pieces_lamp(&builder, 0.0, 0.0, 1.0, 0.0f, 0.0f, 0.0f);
     return builder;
 }
 

@@ -7,7 +7,8 @@
 
 #include "scene/pieces.h"
 
-/* With light of 1 from everywhere and no lamp a surface shows its own colour, times alpha. */
+/* With light of 1 from everywhere and one lamp that is dark a surface shows its own colour, times
+ * alpha. */
 Builder hard_kit_begin(const char *name, double near, double far);
 
 /* Without it, as much again from the lamps: a key light and a weaker one from the other side. */
