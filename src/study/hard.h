@@ -50,7 +50,7 @@ typedef struct HardExpect {
     double error;
     double error_from; /* and this at least: the case shows what it is there for */
     HardPixel pixels[HARD_PIXELS];
-    bool race; /* a list overflows: gl's threads decide what it loses, so its bits are not ref's */
+    bool gl_apart; /* gl's bits need not be ref's, for the reason that the note gives */
     /* Name of an earlier configuration of the case with the same image, bit for bit (or, after a
      * '!', with another image); NULL: nothing is expected. */
     const char *image;
