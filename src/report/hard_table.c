@@ -12,7 +12,8 @@ void report_hard_add(const HardReport *report, HardTotals *totals)
     totals->failed += report->failed;
     for (size_t i = 0; i < report->row_count; i++) {
         totals->nonfinite_rows += report->rows[i].nonfinite > 0;
-        totals->differing_rows += report->rows[i].ref_gl > 0 && !report->rows[i].config.expect.gl_apart;
+        totals->differing_rows +=
+            report->rows[i].ref_gl > 0 && !report->rows[i].config.expect.gl_apart;
     }
 }
 
