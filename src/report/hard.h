@@ -9,6 +9,7 @@
 /* What came of all the cases that ran; rows differ where ref and gl must not. */
 typedef struct HardTotals {
     size_t cases, rows, failed, nonfinite_rows, differing_rows;
+    size_t apart_rows; /* where they do differ, for the reason that a note gives */
 } HardTotals;
 
 void report_hard_add(const HardReport *report, HardTotals *totals);

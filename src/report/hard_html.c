@@ -93,11 +93,12 @@ static void put_head(FileWriter *page, const HardTotals *totals)
                       "<h2 id=\"verdict\"><span class=\"sign\" aria-hidden=\"true\">%s</span> %s"
                       "</h2>\n<ul>\n<li>%zu cases in %zu configurations; %zu missed an expectation."
                       "</li>\n<li>%zu stored or showed a NaN or an infinity.</li>\n"
-                      "<li>In %zu ref and gl stored different bits.</li>\n</ul>\n</section>\n",
+                      "<li>In %zu ref and gl stored different bits, and in %zu where their notes "
+                      "say why.</li>\n</ul>\n</section>\n",
                       totals->failed ? "differ" : "agree", totals->failed ? "&#10007;" : "&#10003;",
                       totals->failed ? "Expectations were missed" : "Every expectation holds",
                       totals->cases, totals->rows, totals->failed, totals->nonfinite_rows,
-                      totals->differing_rows);
+                      totals->differing_rows, totals->apart_rows);
 }
 
 static void put_contents(FileWriter *page, const HardReport *reports, size_t count)
