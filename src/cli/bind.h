@@ -15,6 +15,7 @@ int cmd_render(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 int cmd_driver(int argc, char **argv);
 int cmd_flatten(int argc, char **argv);
+int cmd_hard(int argc, char **argv);
 int cmd_methods(int argc, char **argv);
 int cmd_scenes(int argc, char **argv);
 

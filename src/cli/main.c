@@ -21,6 +21,7 @@ static const Command commands[] = {
     {"compare", "all three renderers; table, JSON, report", cmd_compare},
     {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
     {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
+    {"hard", "the hard cases, each against its own expectation", cmd_hard},
     {"methods", "list the methods of --method", cmd_methods},
     {"scenes", "list the built-in scenes, or write one as glTF", cmd_scenes},
 };

@@ -1,88 +1,12 @@
 #include "scene/generate.h"
 
 #include "base/random.h"
-#include "scene/builder.h"
+#include "scene/pieces.h"
 #include "scene/shapes.h"
 #include "scene/teapot.h"
 
 #include <stdio.h>
 #include <string.h>
-
-#define PI 3.141592653589793
-
-/* ---- pieces --------------------------------------------------------------------------------- */
-
-/* The double nearest to x that a float can hold. (The build keeps gcc from leaving this out.) */
-static double float_value(double x)
-{
-    return (double)(float)x;
-}
-
-/* Placements are rounded to float, so that a file keeps them exactly whoever reads it. */
-static Matrix rounded(const Matrix *a)
-{
-    Matrix out;
-    for (int i = 0; i < 16; i++)
-        out.m[i] = float_value(a->m[i]);
-    return out;
-}
-
-static void place(Builder *builder, const char *name, uint32_t mesh, uint32_t material,
-                  const Matrix *world)
-{
-    Instance instance = {.mesh = mesh, .material = material, .world = rounded(world)};
-    builder_instance(builder, &instance, name);
-}
-
-static void place_at(Builder *builder, const char *name, uint32_t mesh, uint32_t material, double x,
-                     double y, double z)
-{
-    Matrix world = matrix_translate(x, y, z);
-    place(builder, name, mesh, material, &world);
-}
-
-/* A dielectric or metal; alpha below 1 makes it transparent and visible from both sides. */
-static uint32_t surface(Builder *builder, const char *name, const float color[4], float roughness,
-                        float metallic)
-{
-    bool transparent = color[3] < 1.0f;
-    Material material = {.roughness = roughness,
-                         .metallic = metallic,
-                         .occlusion = 1.0f,
-                         .alpha_mode = transparent ? ALPHA_BLEND : ALPHA_OPAQUE,
-                         .alpha_cutoff = 0.5f,
-                         .double_sided = transparent};
-    memcpy(material.base_color, color, sizeof material.base_color);
-    return builder_material(builder, &material, name);
-}
-
-typedef struct Gaze {
-    const char *name;
-    double eye[3], target[3];
-    double yfov, near, far;
-} Gaze;
-
-static void look(Builder *builder, const Gaze *gaze)
-{
-    Matrix world, view = matrix_look_at(gaze->eye, gaze->target, (const double[3]){0.0, 1.0, 0.0});
-    Camera camera = {.yfov = gaze->yfov, .near = gaze->near, .far = gaze->far};
-    matrix_invert_affine(&view, &world);
-    camera.world = rounded(&world);
-    builder_camera(builder, &camera, gaze->name);
-}
-
-/* A light whose brightness does not fall with distance: only its direction matters. */
-static void lamp(Builder *builder, double x, double y, double z, float r, float g, float b)
-{
-    Light light = {.position = {x, y, z}, .color = {r, g, b}, .attenuation = {1.0f, 0.0f, 0.0f}};
-    builder_light(builder, &light);
-}
-
-/* A quarter turn that lays a plane facing +z down, facing +y; then moved. */
-static Matrix lying(double x, double y, double z)
-{
-    return (Matrix){{[0] = 1.0, [6] = -1.0, [9] = 1.0, [12] = x, [13] = y, [14] = z, [15] = 1.0}};
-}
 
 /* ---- teapot_hall and teapot_hall_stress ----------------------------------------------------- */
 
@@ -111,7 +35,7 @@ static void hall_lights(Builder *builder)
     for (int i = 0; i < HALL_LIGHTS; i++) {
         Light light = {.attenuation = {1.0f, 0.14f, 0.07f}};
         for (int k = 0; k < 3; k++)
-            light.position[k] = float_value(random_range(&random, -10.0, 10.0));
+            light.position[k] = pieces_float(random_range(&random, -10.0, 10.0));
         for (int k = 0; k < 3; k++)
             light.color[k] = (float)(HALL_BRIGHTNESS * random_unit(&random));
         builder_light(builder, &light);
@@ -121,13 +45,13 @@ static void hall_lights(Builder *builder)
 
 static void hall_plane(Builder *builder, const HallPlane *plane, uint32_t teapot)
 {
-    uint32_t material = surface(builder, plane->name, plane->color, 0.25f, plane->metallic);
+    uint32_t material = pieces_surface(builder, plane->name, plane->color, 0.25f, plane->metallic);
     for (int row = 0; row < 5; row++)
         for (int column = 0; column < 5; column++) {
             char name[64];
             snprintf(name, sizeof name, "teapot %s %d %d", plane->name, row, column);
-            place_at(builder, name, teapot, material, 2.5 * column - 5.0, 2.5 * row - 5.0,
-                     plane->z);
+            pieces_place_at(builder, name, teapot, material, 2.5 * column - 5.0, 2.5 * row - 5.0,
+                            plane->z);
         }
 }
 
@@ -141,12 +65,12 @@ static Result hall(const char *name, const HallPlane planes[4], const Gaze *gaze
     made = teapot_mesh(&mesh);
     uint32_t teapot = builder_mesh(&builder, made, &mesh);
     uint32_t wall =
-        surface(&builder, "room", (const float[4]){0.75f, 0.75f, 0.75f, 1.0f}, 0.45f, 1.0f);
-    place_at(&builder, "room", room, wall, 0.0, 0.0, 0.0);
+        pieces_surface(&builder, "room", (const float[4]){0.75f, 0.75f, 0.75f, 1.0f}, 0.45f, 1.0f);
+    pieces_place_at(&builder, "room", room, wall, 0.0, 0.0, 0.0);
     for (int i = 0; i < 4; i++)
         hall_plane(&builder, &planes[i], teapot);
     for (int i = 0; i < gaze_count; i++)
-        look(&builder, &gazes[i]);
+        pieces_look(&builder, &gazes[i]);
     hall_lights(&builder);
     return builder_finish(&builder, out);
 }
@@ -158,8 +82,8 @@ static Result generate_teapot_hall(Scene *out)
                                         {"violet", 4.0, {0.75f, 0.35f, 1.0f, 0.5f}, 1.0f},
                                         {"amber", 8.0, {0.75f, 0.35f, 0.0f, 1.0f}, 1.0f}};
     static const Gaze gazes[] = {
-        {"default", {1.0, 2.0, 6.75}, {0.0, 0.5, -4.0}, 80.0 * PI / 180.0, 0.125, 1000.0},
-        {"side", {7.5, 1.25, 5.25}, {0.0, 0.5, 3.75}, 80.0 * PI / 180.0, 0.125, 1000.0}};
+        {"default", {1.0, 2.0, 6.75}, {0.0, 0.5, -4.0}, 80.0 * PIECES_PI / 180.0, 0.125, 1000.0},
+        {"side", {7.5, 1.25, 5.25}, {0.0, 0.5, 3.75}, 80.0 * PIECES_PI / 180.0, 0.125, 1000.0}};
     return hall("teapot_hall", planes, gazes, 2, out);
 }
 
@@ -170,7 +94,7 @@ static Result generate_teapot_hall_stress(Scene *out)
                                         {"violet", 4.0, {0.75f, 0.35f, 1.0f, 0.5f}, 1.0f},
                                         {"amber", 8.0, {0.75f, 0.35f, 0.0f, 0.5f}, 1.0f}};
     static const Gaze gazes[] = {
-        {"default", {0.125, 0.625, 9.0}, {0.0, 0.5, 0.0}, 80.0 * PI / 180.0, 0.125, 1000.0}};
+        {"default", {0.125, 0.625, 9.0}, {0.0, 0.5, 0.0}, 80.0 * PIECES_PI / 180.0, 0.125, 1000.0}};
     return hall("teapot_hall_stress", planes, gazes, 1, out);
 }
 
@@ -189,18 +113,20 @@ static Result generate_tutorial(Scene *out)
     made = shapes_sphere(0.75, 48, 24, &mesh);
     uint32_t sphere = builder_mesh(&builder, made, &mesh);
     uint32_t red =
-        surface(&builder, "teapot", (const float[4]){0.9f, 0.25f, 0.2f, 0.5f}, 0.3f, 0.0f);
+        pieces_surface(&builder, "teapot", (const float[4]){0.9f, 0.25f, 0.2f, 0.5f}, 0.3f, 0.0f);
     uint32_t blue =
-        surface(&builder, "plane", (const float[4]){0.25f, 0.45f, 0.9f, 0.5f}, 0.5f, 0.0f);
+        pieces_surface(&builder, "plane", (const float[4]){0.25f, 0.45f, 0.9f, 0.5f}, 0.5f, 0.0f);
     uint32_t green =
-        surface(&builder, "sphere", (const float[4]){0.3f, 0.85f, 0.35f, 0.5f}, 0.3f, 0.0f);
-    Matrix floor = lying(0.0, 0.1875, 0.0);
-    place_at(&builder, "teapot", teapot, red, -0.5, 0.0, 0.0);
-    place(&builder, "plane", plane, blue, &floor);
-    place_at(&builder, "sphere", sphere, green, 0.75, 0.5, 0.625);
-    look(&builder, &(Gaze){"default", {1.5, 2.0, 4.0}, {0.0, 0.375, 0.0}, PI / 4.0, 0.125, 100.0});
-    lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.5f, 2.5f);
-    lamp(&builder, -4.0, 3.0, -2.0, 0.8f, 0.9f, 1.2f);
+        pieces_surface(&builder, "sphere", (const float[4]){0.3f, 0.85f, 0.35f, 0.5f}, 0.3f, 0.0f);
+    Matrix floor = pieces_lying(0.0, 0.1875, 0.0);
+    pieces_place_at(&builder, "teapot", teapot, red, -0.5, 0.0, 0.0);
+    pieces_place(&builder, "plane", plane, blue, &floor);
+    pieces_place_at(&builder, "sphere", sphere, green, 0.75, 0.5, 0.625);
+    pieces_look(
+        &builder,
+        &(Gaze){"default", {1.5, 2.0, 4.0}, {0.0, 0.375, 0.0}, PIECES_PI / 4.0, 0.125, 100.0});
+    pieces_lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.5f, 2.5f);
+    pieces_lamp(&builder, -4.0, 3.0, -2.0, 0.8f, 0.9f, 1.2f);
     const float background[3] = {0.04f, 0.06f, 0.1f};
     memcpy(builder.scene.background, background, sizeof background);
     return builder_finish(&builder, out);
@@ -212,9 +138,9 @@ static uint32_t ground(Builder *builder, double y)
     Result made = shapes_plane(12.0, 12.0, 1, 1, &mesh);
     uint32_t plane = builder_mesh(builder, made, &mesh);
     uint32_t gray =
-        surface(builder, "ground", (const float[4]){0.6f, 0.58f, 0.55f, 1.0f}, 0.8f, 0.0f);
-    Matrix floor = lying(0.0, y, 0.0);
-    place(builder, "ground", plane, gray, &floor);
+        pieces_surface(builder, "ground", (const float[4]){0.6f, 0.58f, 0.55f, 1.0f}, 0.8f, 0.0f);
+    Matrix floor = pieces_lying(0.0, y, 0.0);
+    pieces_place(builder, "ground", plane, gray, &floor);
     return plane;
 }
 
@@ -236,15 +162,16 @@ static Result generate_chain(Scene *out)
     for (int i = 0; i < LINKS; i++) {
         char name[32];
         snprintf(name, sizeof name, "link %d", i);
-        uint32_t material = surface(&builder, name, colors[i], 0.25f, 0.0f);
+        uint32_t material = pieces_surface(&builder, name, colors[i], 0.25f, 0.0f);
         double x = 0.71875 * (i - LINKS / 2);
-        Matrix world = i % 2 ? lying(x, 0.0, 0.0) : matrix_translate(x, 0.0, 0.0);
-        place(&builder, name, ring, material, &world);
+        Matrix world = i % 2 ? pieces_lying(x, 0.0, 0.0) : matrix_translate(x, 0.0, 0.0);
+        pieces_place(&builder, name, ring, material, &world);
     }
-    look(&builder,
-         &(Gaze){"default", {1.5, 1.75, 4.25}, {0.0, -0.125, 0.0}, PI / 4.0, 0.125, 100.0});
-    lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.4f, 2.3f);
-    lamp(&builder, -4.0, 3.0, 1.0, 0.8f, 0.9f, 1.1f);
+    pieces_look(
+        &builder,
+        &(Gaze){"default", {1.5, 1.75, 4.25}, {0.0, -0.125, 0.0}, PIECES_PI / 4.0, 0.125, 100.0});
+    pieces_lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.4f, 2.3f);
+    pieces_lamp(&builder, -4.0, 3.0, 1.0, 0.8f, 0.9f, 1.1f);
     return builder_finish(&builder, out);
 }
 
@@ -263,14 +190,16 @@ static Result generate_crossing_planes(Scene *out)
     Result made = shapes_plane(2.0, 2.0, 1, 1, &mesh);
     uint32_t plane = builder_mesh(&builder, made, &mesh);
     for (int i = 0; i < 4; i++) {
-        uint32_t material = surface(&builder, names[i], colors[i], 0.4f, 0.0f);
-        Matrix world = i < 3 ? matrix_rotate_y((0.1 + i / 3.0) * PI) : lying(0.0, 0.0, 0.0);
-        place(&builder, names[i], plane, material, &world);
+        uint32_t material = pieces_surface(&builder, names[i], colors[i], 0.4f, 0.0f);
+        Matrix world =
+            i < 3 ? matrix_rotate_y((0.1 + i / 3.0) * PIECES_PI) : pieces_lying(0.0, 0.0, 0.0);
+        pieces_place(&builder, names[i], plane, material, &world);
     }
-    look(&builder,
-         &(Gaze){"default", {1.25, 1.5, 3.5}, {0.0, -0.125, 0.0}, PI / 4.0, 0.125, 100.0});
-    lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.4f, 2.3f);
-    lamp(&builder, -4.0, 3.0, 1.0, 0.8f, 0.9f, 1.1f);
+    pieces_look(
+        &builder,
+        &(Gaze){"default", {1.25, 1.5, 3.5}, {0.0, -0.125, 0.0}, PIECES_PI / 4.0, 0.125, 100.0});
+    pieces_lamp(&builder, 3.0, 5.0, 4.0, 2.5f, 2.4f, 2.3f);
+    pieces_lamp(&builder, -4.0, 3.0, 1.0, 0.8f, 0.9f, 1.1f);
     return builder_finish(&builder, out);
 }
 
@@ -290,14 +219,14 @@ static void ladder_backdrop(Builder *builder, double z)
     made = shapes_plane(0.5, 10.0, 1, 1, &mesh);
     uint32_t stripe = builder_mesh(builder, made, &mesh);
     uint32_t light =
-        surface(builder, "light", (const float[4]){0.9f, 0.9f, 0.9f, 1.0f}, 0.9f, 0.0f);
+        pieces_surface(builder, "light", (const float[4]){0.9f, 0.9f, 0.9f, 1.0f}, 0.9f, 0.0f);
     uint32_t dark =
-        surface(builder, "dark", (const float[4]){0.08f, 0.08f, 0.08f, 1.0f}, 0.9f, 0.0f);
-    place_at(builder, "wall", wall, light, 0.0, 0.0, z);
+        pieces_surface(builder, "dark", (const float[4]){0.08f, 0.08f, 0.08f, 1.0f}, 0.9f, 0.0f);
+    pieces_place_at(builder, "wall", wall, light, 0.0, 0.0, z);
     for (int column = 0; column < LADDER_COLUMNS; column++) {
         char name[32];
         snprintf(name, sizeof name, "stripe %d", column + 1);
-        place_at(builder, name, stripe, dark, column - 7.25, 0.0, z + 0.0625);
+        pieces_place_at(builder, name, stripe, dark, column - 7.25, 0.0, z + 0.0625);
     }
 }
 
@@ -324,11 +253,12 @@ static Result generate_alpha_ladder(Scene *out)
             for (int layer = 0; layer <= column; layer++) {
                 snprintf(name, sizeof name, "row %d column %d layer %d", row + 1, column + 1,
                          layer + 1);
-                place_at(&builder, name, quad, tint, column - 7.5, 3.5 - row, -layer / 64.0);
+                pieces_place_at(&builder, name, quad, tint, column - 7.5, 3.5 - row, -layer / 64.0);
             }
     }
-    look(&builder, &(Gaze){"default", {0.0, 0.0, 40.0}, {0.0, 0.0, 0.0}, 0.2375, 10.0, 100.0});
-    lamp(&builder, 10.0, 20.0, 40.0, 2.5f, 2.5f, 2.5f);
+    pieces_look(&builder,
+                &(Gaze){"default", {0.0, 0.0, 40.0}, {0.0, 0.0, 0.0}, 0.2375, 10.0, 100.0});
+    pieces_lamp(&builder, 10.0, 20.0, 40.0, 2.5f, 2.5f, 2.5f);
     return builder_finish(&builder, out);
 }
 

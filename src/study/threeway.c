@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/progress.h"
 #include "compare/against.h"
+#include "compare/finite.h"
 #include "compare/structure.h"
 #include "frame/method.h"
 
@@ -55,7 +56,9 @@ static Result check_same(int renderer, const Frame *timed, const Frame *traced)
 static Result trace_ref(Run *run)
 {
     Frame traced;
-    Result result = render(run, RENDERER_REF, "ref, traced", store_sink(run->ref_trace), &traced);
+    Finite finite = finite_before(store_sink(run->ref_trace));
+    Result result = render(run, RENDERER_REF, "ref, traced", &finite.sink, &traced);
+    run->report->nonfinite = finite.nonfinite;
     if (result != RESULT_OK)
         return result;
     result = check_same(RENDERER_REF, &run->report->frames[RENDERER_REF], &traced);

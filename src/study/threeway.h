@@ -52,6 +52,7 @@ typedef struct Threeway {
     Frame frames[RENDERER_COUNT];
     PairReport pairs[3]; /* ref–gl, ref–truth, gl–truth */
     StructureReport structure;
+    uint64_t nonfinite; /* values in all of ref's buffers that are NaN or infinite */
     PeelPicture *peels;
     size_t peel_count; /* pictures kept, at most PEEL_PICTURES_MAX */
     bool agree;        /* the verdict: exit code 0 */
