@@ -3,6 +3,7 @@
 // PASS_LIST      geometry: opaque fragments to the G-buffer, transparent ones to the lists; behind
 //                surface.glsl and gbuffer.glsl
 // PASS_VISIBLE   full screen: drops hidden nodes from each pixel's list; behind peel_test.glsl
+// PASS_SORT      full screen: sorts each pixel's list, front to back; behind peel_test.glsl
 // PASS_FIRST     full screen: puts each pixel's front node at the head of its list; behind
 //                peel_test.glsl
 // PASS_EXTRACT   full screen: takes the head of each list to a layer; behind peel_test.glsl
@@ -130,7 +131,7 @@ void main()
 }
 #endif
 
-#ifdef PASS_FIRST
+#if defined(PASS_SORT) || defined(PASS_FIRST)
 bool comes_before(uint a, uint b)
 {
     uint depth_a, depth_b;
@@ -160,6 +161,30 @@ bool comes_before(uint a, uint b)
 #endif
 }
 
+#endif
+
+#ifdef PASS_SORT
+void main()
+{
+    uint pixel = pixel_index(), sorted = NONE;
+    for (uint node = heads[pixel]; node != NONE;) {
+        uint rest = word(node, NEXT), front = NONE, back = sorted;
+        while (back != NONE && comes_before(back, node)) {
+            front = back;
+            back = word(back, NEXT);
+        }
+        nodes[node * WORDS + NEXT] = back;
+        if (front == NONE)
+            sorted = node;
+        else
+            nodes[front * WORDS + NEXT] = node;
+        node = rest;
+    }
+    heads[pixel] = sorted;
+}
+#endif
+
+#ifdef PASS_FIRST
 void main()
 {
     uint pixel = pixel_index(), head = heads[pixel];
