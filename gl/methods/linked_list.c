@@ -5,9 +5,14 @@
  *
  * What a list and a layer are: ref/pipeline/methods/linked_list.c. One program draws opaque and
  * transparent instances in one pass; nodes lie in a storage buffer, numbered by an atomic counter,
- * and the lists' heads in another. A full-screen pass sorts every list by relinking it; then each
- * layer is a full-screen pass that takes the next node of each pixel to an ordinary compact
- * G-buffer, which is lit and blended as a peel's.
+ * and the lists' heads in another. Full-screen passes drop hidden nodes and sort every list by
+ * relinking it; then each layer is a full-screen pass that takes the head of each list to an
+ * ordinary compact G-buffer, which is lit and blended as a peel's.
+ *
+ * llvmpipe ends the loops of a shader after 65,535 turns in all, and sorting n nodes by insertion
+ * takes up to n + n²/2. So longer lists than SORTED_MAX are not sorted: before each layer one more
+ * pass puts the front node at the head. That is a pass of its own because llvmpipe 22.3.6 looks up
+ * wrong materials in a loop behind one whose lanes leave at different turns.
  *
  * Without desc->nodes_per_pixel the buffer has room for GUESS nodes a pixel, and when the counter
  * shows that there are more, for as many as there are: then geometry was drawn twice. The buffer
@@ -25,6 +30,8 @@
 
 enum {
     GUESS = 4,
+    SORTED_MAX = 300,
+    PIXEL_NODES_MAX = 65000,
     HEADER_WORDS = 4
 };
 /* Uniform locations and storage blocks of shaders/linked_list.frag.glsl. */
@@ -47,8 +54,8 @@ typedef struct Header {
 typedef struct Lists {
     Passes *passes;
     Frame *frame;
-    GLuint list, sort, extract;     /* programs */
-    GLuint heads, nodes, materials; /* buffers */
+    GLuint list, visible, sort, first, extract; /* programs */
+    GLuint heads, nodes, materials;             /* buffers */
     size_t heads_bytes, nodes_bytes, materials_bytes;
     uint32_t words, capacity, material_count; /* of a node; nodes; entries */
     Layer layer;
@@ -69,17 +76,24 @@ static Result build_programs(Lists *state)
         .peel_test = true, .octahedral = true, .main = shader_linked_list_frag};
     char defines[96];
     Result result = passes_program(passes, "list", "#define PASS_LIST\n", &list, &state->list);
+    if (result == RESULT_OK)
+        result = passes_program(passes, "list visible", "#define PASS_VISIBLE\n", &full,
+                                &state->visible);
     snprintf(defines, sizeof defines, "#define PASS_SORT\n%s", order);
     if (result == RESULT_OK)
         result = passes_program(passes, "list sort", defines, &full, &state->sort);
+    snprintf(defines, sizeof defines, "#define PASS_FIRST\n%s", order);
+    if (result == RESULT_OK)
+        result = passes_program(passes, "list first", defines, &full, &state->first);
     snprintf(defines, sizeof defines, "#define PASS_EXTRACT\n#define OUT_ID %d\n",
              passes->targets.color_count);
     if (result == RESULT_OK)
         result = passes_program(passes, "list extract", defines, &full, &state->extract);
     if (result != RESULT_OK)
         return result;
-    const GLuint programs[] = {state->list, state->sort, state->extract};
-    for (int i = 0; i < 3; i++)
+    const GLuint programs[] = {state->list, state->visible, state->sort, state->first,
+                               state->extract};
+    for (int i = 0; i < 5; i++)
         gl.ProgramUniform1ui(programs[i], UNIFORM_WIDTH, (GLuint)passes->desc->width);
     return RESULT_OK;
 }
@@ -143,7 +157,9 @@ static Result make(Lists *state)
 static void destroy(Lists *state)
 {
     gl.DeleteProgram(state->list);
+    gl.DeleteProgram(state->visible);
     gl.DeleteProgram(state->sort);
+    gl.DeleteProgram(state->first);
     gl.DeleteProgram(state->extract);
     gl.DeleteBuffers(1, &state->heads);
     gl.DeleteBuffers(1, &state->nodes);
@@ -267,14 +283,27 @@ static Result build_lists(Lists *state)
     return result == RESULT_OK ? passes_end_opaque(state->passes) : result;
 }
 
-/* ---- sorting and layers ---- */
+/* ---- layers ---- */
+
+/* A pass that reads and writes the lists alone. */
+static void relink(const Lists *state, GLuint program)
+{
+    passes_fullscreen(state->passes, program, state->empty_buffer);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
 
 static Result sort_lists(Lists *state)
 {
     const Targets *targets = &state->passes->targets;
     gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
-    passes_fullscreen(state->passes, state->sort, state->empty_buffer);
+    relink(state, state->visible);
     read_header(state);
+    if (state->header.deepest >= PIXEL_NODES_MAX)
+        return result_fail(RESULT_UNSUPPORTED,
+                           "linked-list: %u nodes in one pixel, expected fewer than %d",
+                           state->header.deepest, PIXEL_NODES_MAX);
+    if (state->header.deepest <= SORTED_MAX)
+        relink(state, state->sort);
     return context_check(state->passes->context, "list sort");
 }
 
@@ -285,6 +314,8 @@ static Result draw_layer(Lists *state, uint64_t *samples)
     const Passes *passes = state->passes;
     GLuint64 count = 0;
     progress_add();
+    if (state->header.deepest > SORTED_MAX)
+        relink(state, state->first);
     passes_clear_layer(passes, &state->layer);
     gl.ClearNamedFramebufferuiv(state->layer_buffer, GL_COLOR, passes->targets.color_count, none);
     gl.DepthFunc(GL_ALWAYS);

@@ -2,9 +2,11 @@
 //
 // PASS_LIST      geometry: opaque fragments to the G-buffer, transparent ones to the lists; behind
 //                surface.glsl and gbuffer.glsl
-// PASS_SORT      full screen: sorts each pixel's list and drops what is hidden; behind
+// PASS_VISIBLE   full screen: drops hidden nodes from each pixel's list; behind peel_test.glsl
+// PASS_SORT      full screen: sorts each pixel's list, front to back; behind peel_test.glsl
+// PASS_FIRST     full screen: puts each pixel's front node at the head of its list; behind
 //                peel_test.glsl
-// PASS_EXTRACT   full screen: the next node of each pixel to a layer; behind peel_test.glsl
+// PASS_EXTRACT   full screen: takes the head of each list to a layer; behind peel_test.glsl
 // OUT_ID         its draw buffer for primitive ids
 // GREATER_FIRST  of equal depths, the greater id is in front
 // TEXTURED       nodes hold colour and material; else these follow from the primitive
@@ -108,7 +110,28 @@ void main()
 }
 #endif
 
-#ifdef PASS_SORT
+#ifdef PASS_VISIBLE
+void main()
+{
+    uint pixel = pixel_index(), kept = NONE, count = 0u;
+    for (uint node = heads[pixel]; node != NONE;) {
+        uint rest = word(node, NEXT);
+        if (!is_hidden(uintBitsToFloat(word(node, DEPTH)))) {
+            nodes[node * WORDS + NEXT] = kept;
+            kept = node;
+            count++;
+        }
+        node = rest;
+    }
+    heads[pixel] = kept;
+    if (count > 0u) {
+        atomicAdd(visible, count);
+        atomicMax(deepest, count);
+    }
+}
+#endif
+
+#if defined(PASS_SORT) || defined(PASS_FIRST)
 bool comes_before(uint a, uint b)
 {
     uint depth_a, depth_b;
@@ -138,30 +161,46 @@ bool comes_before(uint a, uint b)
 #endif
 }
 
+#endif
+
+#ifdef PASS_SORT
 void main()
 {
-    uint pixel = pixel_index(), sorted = NONE, count = 0u;
+    uint pixel = pixel_index(), sorted = NONE;
     for (uint node = heads[pixel]; node != NONE;) {
-        uint rest = word(node, NEXT);
-        if (!is_hidden(uintBitsToFloat(word(node, DEPTH)))) {
-            uint front = NONE, back = sorted;
-            while (back != NONE && comes_before(back, node)) {
-                front = back;
-                back = word(back, NEXT);
-            }
-            nodes[node * WORDS + NEXT] = back;
-            if (front == NONE)
-                sorted = node;
-            else
-                nodes[front * WORDS + NEXT] = node;
-            count++;
+        uint rest = word(node, NEXT), front = NONE, back = sorted;
+        while (back != NONE && comes_before(back, node)) {
+            front = back;
+            back = word(back, NEXT);
         }
+        nodes[node * WORDS + NEXT] = back;
+        if (front == NONE)
+            sorted = node;
+        else
+            nodes[front * WORDS + NEXT] = node;
         node = rest;
     }
     heads[pixel] = sorted;
-    if (count > 0u) {
-        atomicAdd(visible, count);
-        atomicMax(deepest, count);
+}
+#endif
+
+#ifdef PASS_FIRST
+void main()
+{
+    uint pixel = pixel_index(), head = heads[pixel];
+    uint first = head, before_first = NONE, before = head;
+    for (uint node = head == NONE ? NONE : word(head, NEXT); node != NONE;) {
+        if (comes_before(node, first)) {
+            first = node;
+            before_first = before;
+        }
+        before = node;
+        node = word(node, NEXT);
+    }
+    if (first != head) {
+        nodes[before_first * WORDS + NEXT] = word(first, NEXT);
+        nodes[first * WORDS + NEXT] = head;
+        heads[pixel] = first;
     }
 }
 #endif

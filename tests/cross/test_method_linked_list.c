@@ -1,5 +1,6 @@
 /* Method linked-list: ref/pipeline against OpenGL on random soups, and what the method promises. */
 #include "bits.h"
+#include "layers.h"
 #include "soup_kinds.h"
 #include "testing.h"
 
@@ -260,6 +261,33 @@ START_TEST(test_materials)
 }
 END_TEST
 
+/* More layers than the lists are sorted for at once, drawn front to back, back to front and in no
+ * order: a shader's loops end somewhere. */
+START_TEST(test_long_lists)
+{
+    enum {
+        MANY = 520
+    };
+    static Layers layers;
+    static Instance instances[MANY];
+    RenderDesc desc = {.width = 5, .height = 3, .method = METHOD_LINKED_LIST};
+    Bits bits;
+    layers_ladder(LAYERS_MAX, &layers);
+    for (int i = 0; i < MANY; i++) {
+        int place = _i == 0 ? i : _i == 1 ? MANY - 1 - i : i * 77 % MANY;
+        instances[i] = layers.instances[i % LAYERS_MAX];
+        instances[i].world = matrix_translate(0, 0, -2.0 - 0.01 * place);
+    }
+    layers.scene.instances = instances;
+    layers.scene.instance_count = MANY;
+    for (int i = 0; i < LAYERS_MAX; i++)
+        layers.materials[i].base_color[3] = 0.01f;
+    bits_compare(&layers.scene, &desc, &bits);
+    ck_assert_msg(bits.differing == 0, "%s", bits.difference);
+    ck_assert_uint_eq(bits.layers.max, MANY);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("linked-list");
@@ -275,6 +303,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_pass_limit, 0, 2);
     tcase_add_test(tcase, test_edges);
     tcase_add_test(tcase, test_materials);
+    tcase_add_loop_test(tcase, test_long_lists, 0, 3);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }
