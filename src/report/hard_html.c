@@ -3,7 +3,7 @@
 #include "image/png.h"
 #include "report/hard.h"
 #include "report/heatmap.h"
-#include "report/html_tables.h"
+#include "report/html_parts.h"
 #include "report/pictures.h"
 #include "report/summary.h"
 

@@ -99,11 +99,7 @@ static const HardCase cases[] = {
      .own = {{.name = "64 passes",
               .desc = {.passes = 64},
               .expect = {.limit = HARD_EXACTLY(239616), .error = ANY_BOUND}},
-             {.name = "linked-list",
-              .desc = {.method = METHOD_LINKED_LIST},
-              .expect = {.gl_apart = true},
-              .note = "llvmpipe ends the loops of a shader invocation after 65,535 turns: gl's "
-                      "insertion sort of 1,000 nodes is cut short, and its order is not ref's."},
+             {.name = "linked-list", .desc = {.method = METHOD_LINKED_LIST}},
              {.name = "rgba8",
               .desc = {.accum = FORMAT_RGBA8},
               .expect = {.error = ANY_BOUND,
