@@ -46,7 +46,8 @@ static const struct argp_option command_options[] = {
      0},
     {"budget", KEY_BUDGET, 0, 0,
      "Also render with one thing changed at a time, and say what each adds to the difference "
-     "between ref and truth, and why each pixel differs",
+     "between ref and truth, and why each pixel differs; with --bound, rounding beyond the bound "
+     "is unexplained",
      0},
     {"classes", KEY_CLASSES, "FILE", 0,
      "Write a PNG in which each pixel's colour says why it differs (with --budget's table as its "

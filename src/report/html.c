@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "frame/method.h"
+#include "report/html_budget.h"
 #include "report/html_parts.h"
 #include "report/html_tables.h"
 #include "report/pictures.h"
@@ -192,6 +193,7 @@ static Result put_page(FileWriter *page, const void *what)
     put_verdict(page, report);
     put_finals(page, report);
     put_differences(page, report);
+    html_budget(page, report->budget);
     put_peels(page, report);
     html_tables(page, report);
     html_command(page, comparison->command);
@@ -205,6 +207,8 @@ static Result write_comparison(const Comparison *comparison, const char *dir)
     Result result = file_make_directories(dir);
     if (result == RESULT_OK)
         result = pictures_write(comparison->report, dir);
+    if (result == RESULT_OK)
+        result = html_budget_picture(comparison->report->budget, dir);
     if (result == RESULT_OK)
         result = html_write(dir, put_page, comparison);
     if (result == RESULT_OK)

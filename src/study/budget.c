@@ -19,6 +19,7 @@ typedef struct Study {
     Renderer ref, truth;
     size_t pixels;
     Image truth_image, actual;
+    Image bound; /* of single precision, where desc asks for it; else without pixels */
     TraceStore *truth_trace, *actual_trace, *best_trace, *method_trace;
     double *sum;      /* CHANNELS per pixel: of all shares */
     float *greatest;  /* per pixel: the greatest share so far */
@@ -127,7 +128,7 @@ static void add_single_precision(Study *study, const Image *best)
 /* ---- renderings ---- */
 
 static Result render(const Study *study, Renderer renderer, const RenderDesc *desc,
-                     const char *label, TraceStore *trace, Image *out)
+                     const char *label, TraceStore *trace, Image *out, Image *bound)
 {
     Frame frame;
     progress_begin(label, 0);
@@ -136,7 +137,11 @@ static Result render(const Study *study, Renderer renderer, const RenderDesc *de
     if (result != RESULT_OK)
         return result;
     *out = frame.final;
+    if (bound)
+        *bound = frame.bound;
     frame.final = (Image){0};
+    if (bound)
+        frame.bound = (Image){0};
     frame_free(&frame);
     return RESULT_OK;
 }
@@ -168,7 +173,7 @@ static Result step(Study *study, BudgetTerm term, const RenderDesc *desc, TraceS
                    Image *from)
 {
     Image to = {0};
-    Result result = render(study, study->ref, desc, terms[term].key, trace, &to);
+    Result result = render(study, study->ref, desc, terms[term].key, trace, &to, NULL);
     if (result != RESULT_OK)
         return result;
     add_term(study, term, from, &to);
@@ -181,7 +186,7 @@ static Result step(Study *study, BudgetTerm term, const RenderDesc *desc, TraceS
 static Result change(Study *study, BudgetTerm term, const RenderDesc *desc, const Image *from)
 {
     Image to = {0};
-    Result result = render(study, study->ref, desc, terms[term].key, NULL, &to);
+    Result result = render(study, study->ref, desc, terms[term].key, NULL, &to, NULL);
     if (result == RESULT_OK)
         add_term(study, term, from, &to);
     image_free(&to);
@@ -199,7 +204,7 @@ static Result change_accum(Study *study, const RenderDesc *desc, const Image *fr
         format_info(desc->accum)->kind == KIND_UNORM && replay_possible(study->method_trace);
     Result result = clamps ? replay_clamped(study->method_trace, from, &base) : RESULT_OK;
     if (result == RESULT_OK)
-        result = render(study, study->ref, desc, terms[BUDGET_ACCUM].key, NULL, &to);
+        result = render(study, study->ref, desc, terms[BUDGET_ACCUM].key, NULL, &to, NULL);
     if (result == RESULT_OK && clamps)
         add_term(study, BUDGET_CLAMP, from, &base);
     if (result == RESULT_OK)
@@ -248,7 +253,7 @@ static Result explain(Study *study)
     Image image = {0};
     method.nodes_per_pixel = desc->nodes_per_pixel;
     method.post = desc->post;
-    Result result = render(study, study->ref, &best, "best", study->best_trace, &image);
+    Result result = render(study, study->ref, &best, "best", study->best_trace, &image, NULL);
     if (result == RESULT_OK)
         result = structure_compare(study->best_trace, study->truth_trace, desc->width, desc->height,
                                    study->ordered, &counts);
@@ -263,7 +268,7 @@ static Result explain(Study *study)
         result = step(study, BUDGET_METHOD, &method, study->method_trace, &image);
     else if (result == RESULT_OK && format_info(desc->accum)->kind == KIND_UNORM) {
         image_free(&image);
-        result = render(study, study->ref, &method, "layers", study->method_trace, &image);
+        result = render(study, study->ref, &method, "layers", study->method_trace, &image, NULL);
     }
     if (result == RESULT_OK)
         result = change_formats(study, &method, &image);
@@ -315,6 +320,16 @@ static PixelClass class_of_share(int term)
     return of[term];
 }
 
+/* Whether single precision may be that far from truth. */
+static bool in_bound(const Study *study, size_t pixel, const float *a, const float *b)
+{
+    const float *bound = study->bound.pixels;
+    for (int c = 0; bound && c < CHANNELS; c++)
+        if (fabs((double)b[c] - (double)a[c]) > (double)bound[CHANNELS * pixel + (size_t)c])
+            return false;
+    return true;
+}
+
 static void classify(void *context, size_t pixel, StructurePixel *sides)
 {
     Study *study = context;
@@ -327,6 +342,8 @@ static void classify(void *context, size_t pixel, StructurePixel *sides)
             layers ? class_of_fragments(study->desc, &sides[0], &sides[1], &sides[2]) : CLASS_EQUAL;
         if (class == CLASS_EQUAL)
             class = class_of_share(study->term[pixel]);
+        if (class == CLASS_ROUNDING && !in_bound(study, pixel, a, b))
+            class = CLASS_UNEXPLAINED;
     }
     study->budget->counts[class]++;
     study->budget->classes[pixel] = (uint8_t) class;
@@ -356,6 +373,7 @@ static void release(Study *study)
 {
     image_free(&study->truth_image);
     image_free(&study->actual);
+    image_free(&study->bound);
     store_destroy(study->truth_trace);
     store_destroy(study->actual_trace);
     store_destroy(study->best_trace);
@@ -371,10 +389,10 @@ static Result run(Study *study)
     const RenderDesc *desc = study->desc;
     Result result = allocate(study);
     if (result == RESULT_OK)
-        result =
-            render(study, study->truth, desc, "truth", study->truth_trace, &study->truth_image);
+        result = render(study, study->truth, desc, "truth", study->truth_trace, &study->truth_image,
+                        &study->bound);
     if (result == RESULT_OK)
-        result = render(study, study->ref, desc, "ref", study->actual_trace, &study->actual);
+        result = render(study, study->ref, desc, "ref", study->actual_trace, &study->actual, NULL);
     if (result == RESULT_OK)
         result = explain(study);
     if (result != RESULT_OK)
