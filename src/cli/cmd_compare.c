@@ -178,6 +178,8 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
 {
     static Threeway reports[METHOD_COUNT];
     size_t count = 0;
+    if (command->budget)
+        return result_fail(RESULT_BAD_INPUT, "--budget: expected a single --method");
     Result result = command->report ? open_directory(command->report) : RESULT_OK;
     if (result == RESULT_OK)
         result = options_check_output(command->json);

@@ -127,6 +127,15 @@ exits 2 'all methods, a tolerance that nothing meets' "$peel" compare chain.gltf
     --tolerance 1e-30 --json all.json --report methods/of/this
 has 'every method, also after one that differs' all.json '"method": "painter"'
 has 'every method, also after one that differs' methods/of/this/index.html '[0-9] of [0-9]* methods differ'
+exits 0 'error budget' "$peel" compare chain.gltf --size 64x36 --profile seed --tolerance 1 \
+    --json budget.json --report budget --classes classes.png
+has 'the classes' output '^gbuffer .*#66c278'
+has 'the terms' budget.json '"gbuffer": {'
+has 'the classes in JSON' budget.json '"opaque_flip"'
+expect 'the picture of classes' test -s classes.png
+expect 'the same on the page' cmp classes.png budget/classes.png
+has 'the section' budget/index.html 'Where the error comes from'
+exits 4 'error budget of all methods' "$peel" compare chain.gltf --size 8x8 --method all --budget
 exits 0 '1x1' "$peel" compare chain.gltf --size 1x1
 exits 0 'no lights' "$peel" compare chain.gltf --size 33x17 --lights 0
 exits 0 'all opaque' "$peel" compare chain.gltf --size 33x17 --opacity 1
