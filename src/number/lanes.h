@@ -141,4 +141,308 @@ static inline Lanes lanes_mix(Lanes a, Lanes b, Lanes t)
     return lanes_add(lanes_mul(a, lanes_sub(lanes_all(1.0f), t)), lanes_mul(b, t));
 }
 
+/* a·b + c with one rounding, or two: op_muladd. */
+static inline Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
+{
+#if LANES == 1
+    return op_fma(a, b, c);
+#elif LANES == 4
+    float x[4], y[4], z[4];
+    lanes_store(x, a);
+    lanes_store(y, b);
+    lanes_store(z, c);
+    for (int i = 0; i < 4; i++)
+        z[i] = op_fma(x[i], y[i], z[i]);
+    return lanes_load(z);
+#else
+    return LANES_CALL(fmadd_ps)(a, b, c);
+#endif
+}
+static inline Lanes lanes_muladd(bool fused, Lanes a, Lanes b, Lanes c)
+{
+    return fused ? lanes_fma(a, b, c) : lanes_add(lanes_mul(a, b), c);
+}
+
+/* ---- 32-bit integers and masks --------------------------------------------------------------- */
+
+#if LANES == 1
+typedef int32_t LanesInt;
+typedef uint32_t LanesMask; /* bit 0 */
+#elif LANES == 4
+typedef __m128i LanesInt;
+typedef __m128i LanesMask; /* all ones or zeros per lane */
+#elif LANES == 8
+typedef __m256i LanesInt;
+typedef __m256i LanesMask;
+#else
+typedef __m512i LanesInt;
+typedef __mmask16 LanesMask; /* a bit per lane */
+#endif
+
+enum {
+    LANES_FULL = (1 << LANES) - 1 /* lanes_mask_bits of every lane */
+};
+
+static inline LanesInt lanes_int_load(const int32_t *p)
+{
+#if LANES == 1
+    return *p;
+#elif LANES == 4
+    return _mm_loadu_si128((const __m128i *)p);
+#elif LANES == 8
+    return _mm256_loadu_si256((const __m256i *)p);
+#else
+    return _mm512_loadu_si512(p);
+#endif
+}
+static inline void lanes_int_store(int32_t *p, LanesInt a)
+{
+#if LANES == 1
+    *p = a;
+#elif LANES == 4
+    _mm_storeu_si128((__m128i *)p, a);
+#elif LANES == 8
+    _mm256_storeu_si256((__m256i *)p, a);
+#else
+    _mm512_storeu_si512(p, a);
+#endif
+}
+static inline LanesInt lanes_int_all(int32_t x)
+{
+#if LANES == 1
+    return x;
+#else
+    return LANES_CALL(set1_epi32)(x);
+#endif
+}
+/* Sums and differences wrap. */
+static inline LanesInt lanes_int_add(LanesInt a, LanesInt b)
+{
+#if LANES == 1
+    return (int32_t)((uint32_t)a + (uint32_t)b);
+#else
+    return LANES_CALL(add_epi32)(a, b);
+#endif
+}
+static inline LanesInt lanes_int_sub(LanesInt a, LanesInt b)
+{
+#if LANES == 1
+    return (int32_t)((uint32_t)a - (uint32_t)b);
+#else
+    return LANES_CALL(sub_epi32)(a, b);
+#endif
+}
+static inline LanesInt lanes_int_or(LanesInt a, LanesInt b)
+{
+#if LANES == 1
+    return a | b;
+#elif LANES == 4
+    return _mm_or_si128(a, b);
+#elif LANES == 8
+    return _mm256_or_si256(a, b);
+#else
+    return _mm512_or_si512(a, b);
+#endif
+}
+static inline LanesInt lanes_int_and(LanesInt a, LanesInt b)
+{
+#if LANES == 1
+    return a & b;
+#elif LANES == 4
+    return _mm_and_si128(a, b);
+#elif LANES == 8
+    return _mm256_and_si256(a, b);
+#else
+    return _mm512_and_si512(a, b);
+#endif
+}
+
+/* The bits of a float, and back. */
+static inline LanesInt lanes_bits(Lanes a)
+{
+#if LANES == 1
+    return (int32_t)op_bits(a);
+#elif LANES == 4
+    return _mm_castps_si128(a);
+#elif LANES == 8
+    return _mm256_castps_si256(a);
+#else
+    return _mm512_castps_si512(a);
+#endif
+}
+static inline Lanes lanes_from_bits(LanesInt a)
+{
+#if LANES == 1
+    return op_from_bits((uint32_t)a);
+#elif LANES == 4
+    return _mm_castsi128_ps(a);
+#elif LANES == 8
+    return _mm256_castsi256_ps(a);
+#else
+    return _mm512_castsi512_ps(a);
+#endif
+}
+/* Nearest integer, as op_round_to_int; to zero; and the float of an integer. */
+static inline LanesInt lanes_round_to_int(Lanes a)
+{
+#if LANES == 1
+    return op_round_to_int(a);
+#else
+    return LANES_CALL(cvtps_epi32)(a);
+#endif
+}
+static inline LanesInt lanes_truncate_to_int(Lanes a)
+{
+#if LANES == 1
+    return (int32_t)a;
+#else
+    return LANES_CALL(cvttps_epi32)(a);
+#endif
+}
+static inline Lanes lanes_from_int(LanesInt a)
+{
+#if LANES == 1
+    return (float)a;
+#else
+    return LANES_CALL(cvtepi32_ps)(a);
+#endif
+}
+
+/* Signed comparisons. */
+static inline LanesMask lanes_int_less(LanesInt a, LanesInt b)
+{
+#if LANES == 1
+    return a < b;
+#elif LANES == 4
+    return _mm_cmplt_epi32(a, b);
+#elif LANES == 8
+    return _mm256_cmpgt_epi32(b, a);
+#else
+    return _mm512_cmplt_epi32_mask(a, b);
+#endif
+}
+static inline LanesMask lanes_int_equal(LanesInt a, LanesInt b)
+{
+#if LANES == 1
+    return a == b;
+#elif LANES == 16
+    return _mm512_cmpeq_epi32_mask(a, b);
+#else
+    return LANES_CALL(cmpeq_epi32)(a, b);
+#endif
+}
+/* a < b of floats, false where either is NaN. */
+static inline LanesMask lanes_less(Lanes a, Lanes b)
+{
+#if LANES == 1
+    return a < b;
+#elif LANES == 4
+    return _mm_castps_si128(_mm_cmplt_ps(a, b));
+#elif LANES == 8
+    return _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
+#else
+    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+#endif
+}
+
+static inline LanesMask lanes_mask_and(LanesMask a, LanesMask b)
+{
+#if LANES == 4 || LANES == 8
+    return lanes_int_and(a, b);
+#else
+    return (LanesMask)(a & b);
+#endif
+}
+/* a and not b. */
+static inline LanesMask lanes_mask_without(LanesMask a, LanesMask b)
+{
+#if LANES == 4
+    return _mm_andnot_si128(b, a);
+#elif LANES == 8
+    return _mm256_andnot_si256(b, a);
+#else
+    return (LanesMask)(a & ~b);
+#endif
+}
+/* Bit i is lane i. */
+static inline uint32_t lanes_mask_bits(LanesMask a)
+{
+#if LANES == 4
+    return (uint32_t)_mm_movemask_ps(_mm_castsi128_ps(a));
+#elif LANES == 8
+    return (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(a));
+#else
+    return a;
+#endif
+}
+static inline LanesMask lanes_mask_from_bits(uint32_t bits)
+{
+#if LANES == 4
+    __m128i lane = _mm_set_epi32(8, 4, 2, 1);
+    return _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32((int32_t)bits), lane), lane);
+#elif LANES == 8
+    __m256i lane = _mm256_set_epi32(128, 64, 32, 16, 8, 4, 2, 1);
+    return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32((int32_t)bits), lane), lane);
+#else
+    return (LanesMask)bits;
+#endif
+}
+
+/* Per lane mask ? yes : no. */
+static inline LanesInt lanes_int_select(LanesMask mask, LanesInt yes, LanesInt no)
+{
+#if LANES == 1
+    return mask ? yes : no;
+#elif LANES == 4
+    return _mm_or_si128(_mm_and_si128(mask, yes), _mm_andnot_si128(mask, no));
+#elif LANES == 8
+    return _mm256_blendv_epi8(no, yes, mask);
+#else
+    return _mm512_mask_blend_epi32(mask, no, yes);
+#endif
+}
+static inline Lanes lanes_select(LanesMask mask, Lanes yes, Lanes no)
+{
+#if LANES == 1
+    return mask ? yes : no;
+#elif LANES == 16
+    return _mm512_mask_blend_ps(mask, no, yes);
+#else
+    return lanes_from_bits(lanes_int_select(mask, lanes_bits(yes), lanes_bits(no)));
+#endif
+}
+
+/* Stores the lanes whose bit is set one after the other at p, which has room for LANES values;
+ * those after them are any. */
+static inline void lanes_int_pack(int32_t *p, uint32_t bits, LanesInt a)
+{
+#if LANES == 16
+    lanes_int_store(p, _mm512_maskz_compress_epi32((__mmask16)bits, a));
+#else
+    if (bits == LANES_FULL) {
+        lanes_int_store(p, a);
+        return;
+    }
+    int32_t lane[LANES];
+    lanes_int_store(lane, a);
+    for (; bits; bits &= bits - 1)
+        *p++ = lane[__builtin_ctz(bits)];
+#endif
+}
+static inline void lanes_pack(float *p, uint32_t bits, Lanes a)
+{
+#if LANES == 16
+    lanes_store(p, _mm512_maskz_compress_ps((__mmask16)bits, a));
+#else
+    if (bits == LANES_FULL) {
+        lanes_store(p, a);
+        return;
+    }
+    float lane[LANES];
+    lanes_store(lane, a);
+    for (; bits; bits &= bits - 1)
+        *p++ = lane[__builtin_ctz(bits)];
+#endif
+}
+
 #endif
