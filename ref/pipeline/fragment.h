@@ -26,38 +26,38 @@ static inline float fragment_inverse_w(const Pass *pass, const Setup *setup, int
     return op_div(1.0f, plane_at(pass->fused, &w, x, y));
 }
 
-/* Where the material has textures: their samples times base[4], roughness and metallic. */
-static inline void fragment_texture(const Pass *pass, const Setup *setup, const Material *material,
-                                    float inverse_w, int x, int y, float base[4], float surface[2])
+/* What the material and its textures at uv give: base colour and alpha, roughness and metallic. */
+static inline void fragment_material(const Scene *scene, const Material *material,
+                                     const float uv[2], float base[4], float surface[2])
 {
-    const Vertex *const *v = setup->corner;
-    const Texture *textures = pass->scene->textures;
-    float uv[2], sample[4];
-    for (int i = 0; i < 2; i++)
-        uv[i] = fragment_varying(pass, setup, (float[3]){v[0]->uv[i], v[1]->uv[i], v[2]->uv[i]},
-                                 inverse_w, x, y);
+    float sample[4];
+    for (int i = 0; i < 4; i++)
+        base[i] = material->base_color[i];
+    surface[0] = material->roughness;
+    surface[1] = material->metallic;
     if (material->base_color_texture) {
-        texture_sample(&textures[material->base_color_texture - 1], uv, sample);
+        texture_sample(&scene->textures[material->base_color_texture - 1], uv, sample);
         for (int i = 0; i < 4; i++)
             base[i] = op_mul(base[i], sample[i]);
     }
     if (material->metallic_roughness_texture) {
-        texture_sample(&textures[material->metallic_roughness_texture - 1], uv, sample);
+        texture_sample(&scene->textures[material->metallic_roughness_texture - 1], uv, sample);
         surface[0] = op_mul(surface[0], sample[1]);
         surface[1] = op_mul(surface[1], sample[2]);
     }
 }
 
-/* What the material and its textures give: base colour and alpha, roughness and metallic. */
-static inline void fragment_material(const Pass *pass, const Setup *setup, const Material *material,
-                                     float inverse_w, int x, int y, float base[4], float surface[2])
+/* Texture coordinates at a pixel; 0 where the material has no texture. */
+static inline void fragment_uv(const Pass *pass, const Setup *setup, const Material *material,
+                               float inverse_w, int x, int y, float uv[2])
 {
-    for (int i = 0; i < 4; i++)
-        base[i] = material->base_color[i];
-    surface[0] = material->roughness;
-    surface[1] = material->metallic;
-    if (material->base_color_texture || material->metallic_roughness_texture)
-        fragment_texture(pass, setup, material, inverse_w, x, y, base, surface);
+    const Vertex *const *v = setup->corner;
+    bool textured = material->base_color_texture || material->metallic_roughness_texture;
+    for (int i = 0; i < 2; i++)
+        uv[i] = textured ? fragment_varying(pass, setup,
+                                            (float[3]){v[0]->uv[i], v[1]->uv[i], v[2]->uv[i]},
+                                            inverse_w, x, y)
+                         : 0.0f;
 }
 
 /* Whether the alpha mask discards the fragment. Flushing mode. */
@@ -68,9 +68,9 @@ static inline bool fragment_masked(const Pass *pass, const Setup *setup, const P
     if (!draw->masked)
         return false;
     const Material *material = &pass->scene->materials[draw->material];
-    float base[4], surface[2];
-    fragment_material(pass, setup, material, fragment_inverse_w(pass, setup, x, y), x, y, base,
-                      surface);
+    float uv[2], base[4], surface[2];
+    fragment_uv(pass, setup, material, fragment_inverse_w(pass, setup, x, y), x, y, uv);
+    fragment_material(pass->scene, material, uv, base, surface);
     return base[3] < op_flush(material->alpha_cutoff);
 }
 
@@ -82,7 +82,7 @@ static inline void fragment_surface(const Pass *pass, const Setup *setup,
     const Material *material = &pass->scene->materials[draw->material];
     const Vertex *const *v = setup->corner;
     float inverse_w = fragment_inverse_w(pass, setup, x, y);
-    float normal[3];
+    float normal[3], uv[2];
     for (int i = 0; i < 3; i++) {
         out->position[i] = fragment_varying(
             pass, setup, (float[3]){v[0]->position[i], v[1]->position[i], v[2]->position[i]},
@@ -100,11 +100,19 @@ static inline void fragment_surface(const Pass *pass, const Setup *setup,
         out->normal[i] = turn ? op_neg(n) : n;
     }
     out->normal[3] = 0.0f;
-    fragment_material(pass, setup, material, inverse_w, x, y, out->diffuse, out->material);
+    fragment_uv(pass, setup, material, inverse_w, x, y, uv);
+    fragment_material(pass->scene, material, uv, out->diffuse, out->material);
     if (!draw->transparent)
         out->diffuse[3] = 1.0f;
     out->material[2] = material->occlusion;
     out->material[3] = 1.0f;
+}
+
+/* A surface as the targets take it, in place. */
+static inline void fragment_encode(const Pass *pass, Texel *texel)
+{
+    if (pass->layout.normal == FORMAT_RG16)
+        encode_octahedral(texel->normal, texel->normal);
 }
 
 /* What it writes to its targets, unquantised. Flushing mode. */
@@ -112,8 +120,7 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
                                   int x, int y, Texel *out)
 {
     fragment_surface(pass, setup, primitive, x, y, out);
-    if (pass->layout.normal == FORMAT_RG16)
-        encode_octahedral(out->normal, out->normal);
+    fragment_encode(pass, out);
 }
 
 /* From what the lighting pass fetches at a pixel to what it shades: undoes the encodings, in

@@ -11,13 +11,14 @@ typedef struct TileRange {
 
 static TileRange tiles_of(const Pass *pass, const Primitive *primitive)
 {
+    uint32_t tile = (uint32_t)pass->tile;
     const Vertex *vertices = pass->geometry.vertices;
     const Vertex *const corners[3] = {&vertices[primitive->vertex[0]],
                                       &vertices[primitive->vertex[1]],
                                       &vertices[primitive->vertex[2]]};
     PixelRect box = setup_bounds(corners, pass->view.width, pass->view.height);
-    return (TileRange){(uint32_t)box.x0 / TILE, (uint32_t)box.y0 / TILE, (uint32_t)box.x1 / TILE,
-                       (uint32_t)box.y1 / TILE};
+    return (TileRange){(uint32_t)box.x0 / tile, (uint32_t)box.y0 / tile, (uint32_t)box.x1 / tile,
+                       (uint32_t)box.y1 / tile};
 }
 
 /* Counting sort by tile: counts, prefix sums, then the indices in draw order. */
@@ -90,8 +91,10 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
     Result result = view_build(scene, desc, &out->view);
     if (result != RESULT_OK)
         return result;
-    out->tile_columns = ((uint32_t)desc->width + TILE - 1) / TILE;
-    out->tile_count = out->tile_columns * (((uint32_t)desc->height + TILE - 1) / TILE);
+    out->tile = desc->tile ? desc->tile : TILE_DEFAULT;
+    uint32_t tile = (uint32_t)out->tile;
+    out->tile_columns = ((uint32_t)desc->width + tile - 1) / tile;
+    out->tile_count = out->tile_columns * (((uint32_t)desc->height + tile - 1) / tile);
     out->pool = pool_create(desc->threads);
     result = out->pool ? reserve_geometry(out) : RESULT_NO_MEMORY;
     if (result == RESULT_OK)
@@ -119,8 +122,9 @@ void pass_free(Pass *pass)
 
 PixelRect pass_tile_rect(const Pass *pass, uint32_t tile)
 {
-    int x0 = (int)(tile % pass->tile_columns) * TILE, y0 = (int)(tile / pass->tile_columns) * TILE;
-    int x1 = x0 + TILE - 1, y1 = y0 + TILE - 1;
+    int x0 = (int)(tile % pass->tile_columns) * pass->tile;
+    int y0 = (int)(tile / pass->tile_columns) * pass->tile;
+    int x1 = x0 + pass->tile - 1, y1 = y0 + pass->tile - 1;
     return (PixelRect){x0, y0, x1 < pass->view.width ? x1 : pass->view.width - 1,
                        y1 < pass->view.height ? y1 : pass->view.height - 1};
 }

@@ -9,10 +9,6 @@
 #include "ref/pipeline/setup.h"
 #include "ref/pipeline/shade.h"
 
-enum {
-    TILE = TRACE_TILE,
-    TILE_PIXELS = TILE * TILE
-};
 #define PRIMITIVE_NONE UINT32_MAX
 
 /* Per tile, the indices of the primitives whose bounding box meets it, in draw order. */
@@ -28,6 +24,7 @@ typedef struct Pass {
     Pool *pool;
     Geometry geometry;
     Bins opaque_bins, transparent_bins;
+    int tile; /* pixels per side: a power of two from TILE_MIN to TILE_MAX */
     uint32_t tile_columns, tile_count;
     uint64_t bytes, limit; /* reserved so far; the caller's --max-memory */
     bool fused, reversed;
@@ -43,6 +40,12 @@ Result pass_reserve(Pass *pass, uint64_t bytes);
 
 /* The tile's pixels in window coordinates (y up). */
 PixelRect pass_tile_rect(const Pass *pass, uint32_t tile);
+
+/* The tile that window pixel (x, y) is in. */
+static inline uint32_t pass_tile_at(const Pass *pass, int x, int y)
+{
+    return (uint32_t)(y / pass->tile) * pass->tile_columns + (uint32_t)(x / pass->tile);
+}
 
 void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out);
 
@@ -119,7 +122,8 @@ static inline bool pass_may_leave(const Pass *pass, int peels, int limit)
     return peels > 0 && (peels == limit || pass->desc->peel_test == PEEL_TEST_RAW);
 }
 
-/* Of a method that draws the transparent list peel by peel, until one yields nothing or the limit. */
+/* Of a method that draws the transparent list peel by peel, until one yields nothing or the limit.
+ */
 static inline int pass_geometry_passes(const Pass *pass, int peels)
 {
     int limit = pass->desc->passes ? pass->desc->passes : PASSES_MAX;

@@ -1,35 +1,54 @@
 /* Deferred depth peeling, the tile-resident path: the bits of methods/peel.c, without a trace.
  * One body: a file defines LANES and TILE_RENDER and includes it, once per instruction set.
  *
- * A tile is rendered whole before the next: opaque, then peel by peel until one yields nothing,
- * then opaque lighting, background and display. The geometry passes rasterize depth and primitive
- * index only; attributes are computed for the fragments that survive, with the same operations,
- * so they have the same bits. Memory per worker does not grow with the number of peels. */
+ * A tile is rendered whole before the next. Its triangles are set up once. Geometry passes
+ * rasterize depth and triangle only: first the opaque ones, then the transparent ones, each of
+ * whose fragments is inserted into its pixel's layers, which are kept in order of depth. That keeps
+ * what peel after peel would keep: a peel takes the nearest depth behind the last one, and of
+ * equal depths the first drawn (DEPTH_LESS) or the last. Attributes are then computed for the
+ * fragments that are layers, with the same operations and so the same bits, lit and blended, layer
+ * by layer, the opaque one last. More layers than LAYERS, or than a raw or biased test, which
+ * depends on the layer before it, can tell at once, are found in further rounds. Memory per worker
+ * does not grow with the scene, the number of peels or of layers. */
 #include "base/memory.h"
-#include "number/blend.h"
-#include "number/op.h"
-#include "ref/pipeline/fragment.h"
 #include "ref/pipeline/pass.h"
-#include "ref/pipeline/shade.h"
-#include "ref/pipeline/shade_body.h"
 #include "ref/pipeline/tile.h"
+#include "ref/pipeline/tile_light_body.h"
+#include "ref/pipeline/tile_raster_body.h"
 
 #include <stdlib.h>
 
-/* Setups of a tile's transparent primitives, kept between its peels. */
 enum {
-    SETUPS_MAX = 16384
+    LAYERS = 16,     /* of a round */
+    TRIANGLES = 1024 /* of a list that are set up at a time */
 };
+#define KEY_NONE    INT32_MAX /* of a layer without a fragment: behind every depth */
+#define KEY_OUTSIDE INT32_MIN /* the opaque key of a pixel outside the image: hides everything */
 
-/* One worker's memory. */
+/* One list's triangles in the tile. */
+typedef struct TileList {
+    const PrimitiveList *list;
+    const uint32_t *items;
+    size_t count;
+    TileTriangle *triangles; /* TRIANGLES */
+    uint32_t made;           /* of them, that cover something */
+    bool resident;           /* all are in triangles: layers name them, not items of the list */
+    bool ready;              /* made */
+} TileList;
+
+/* One worker's memory; arrays have an entry per pixel of a tile, block by block. */
 typedef struct Scratch {
-    uint32_t opaque_key[TILE_PIXELS], opaque_index[TILE_PIXELS];
-    uint32_t key[2][TILE_PIXELS]; /* the two depth buffers */
-    uint32_t index[TILE_PIXELS];  /* winner of the current pass, in its list */
-    uint32_t fragments[TILE_PIXELS], remaining[TILE_PIXELS];
-    unsigned char accum[TILE_PIXELS * 16];
-    Setup *setups;
-    size_t setup_capacity;
+    void *memory;
+    int32_t *opaque_key, *opaque_index;
+    int32_t *previous;    /* key of the last layer of the round before */
+    int32_t *fragments;   /* transparent, in front of the opaque one */
+    int32_t *remaining;   /* behind the last layer */
+    int32_t *layers;      /* per block, per layer: LANES keys, LANES indices */
+    uint8_t *used;        /* layers of a block that have a fragment */
+    unsigned char *accum; /* 16 bytes a pixel; RGBA32F: per block, LANES of each channel */
+    TileTriangle *triangles[2];
+    PlanesCache *cache;
+    uint32_t lists_done; /* numbers the lists of all tiles, for tags */
 } Scratch;
 
 typedef struct TileJob {
@@ -42,254 +61,440 @@ typedef struct TileJob {
     Frame *frame;
 } TileJob;
 
-/* A pass over the tile's primitives. */
-typedef struct TilePass {
+typedef struct Tile {
     const Pass *pass;
     Scratch *scratch;
-    PixelRect rect;
-    uint32_t *key;            /* depth buffer being written */
-    const uint32_t *previous; /* the previous peel's; NULL in the first peel */
-    uint32_t *index;
-    uint32_t primitive; /* index in its list */
-} TilePass;
+    TileGrid grid;
+    TileList opaque, transparent;
+    PassCounts *counts;
+    int32_t far;     /* the key that a depth buffer is cleared to */
+    int32_t equal;   /* 1: of equal depths the last drawn stays */
+    int capacity;    /* layers of a round */
+    bool one_by_one; /* the peel test asks for the layer before */
+    bool later;      /* not the first round */
+    bool overflowed; /* a fragment found no layer */
+} Tile;
 
-static int local_index(const TilePass *tile, int x, int y)
+/* ---- triangles ---- */
+
+static inline void list_begin(const Pass *pass, bool transparent, uint32_t number,
+                              TileTriangle *triangles, TileList *out)
 {
-    return (y - tile->rect.y0) * TILE + (x - tile->rect.x0);
-}
-
-static inline void keep(TilePass *tile, int pixel, FragmentDepth depth)
-{
-    tile->key[pixel] = depth.key;
-    tile->index[pixel] = tile->primitive;
-}
-
-static void visit_opaque(void *context, const Setup *setup, int x, int y)
-{
-    TilePass *tile = context;
-    const Pass *pass = tile->pass;
-    int pixel = local_index(tile, x, y);
-    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
-    if (pass_depth_test(pass, depth.key, tile->key[pixel]) &&
-        !fragment_masked(pass, setup, &pass->geometry.opaque.items[tile->primitive], x, y))
-        keep(tile, pixel, depth);
-}
-
-static void visit_transparent(void *context, const Setup *setup, int x, int y)
-{
-    TilePass *tile = context;
-    const Pass *pass = tile->pass;
-    int pixel = local_index(tile, x, y);
-    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
-    if (pass_hidden(pass, depth, tile->scratch->opaque_key[pixel]))
-        return;
-    if (!tile->previous)
-        tile->scratch->fragments[pixel]++;
-    else if (pass_peeled(pass, depth, tile->previous[pixel]))
-        return;
-    if (pass_depth_test(pass, depth.key, tile->key[pixel]))
-        keep(tile, pixel, depth);
-}
-
-static void visit_remaining(void *context, const Setup *setup, int x, int y)
-{
-    TilePass *tile = context;
-    const Pass *pass = tile->pass;
-    int pixel = local_index(tile, x, y);
-    FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
-    if (!pass_hidden(pass, depth, tile->scratch->opaque_key[pixel]) &&
-        pass_remains(pass, depth, tile->previous[pixel]))
-        tile->scratch->remaining[pixel]++;
-}
-
-static void fill(uint32_t *values, uint32_t value)
-{
-    for (int i = 0; i < TILE_PIXELS; i++)
-        values[i] = value;
-}
-
-static void draw_opaque(TilePass *tile, uint32_t number)
-{
-    const Pass *pass = tile->pass;
-    const Bins *bins = &pass->opaque_bins;
-    for (size_t i = bins->first[number]; i < bins->first[number + 1]; i++) {
-        Setup setup;
-        tile->primitive = bins->item[i];
-        pass_setup(pass, &pass->geometry.opaque.items[tile->primitive], &setup);
-        setup_visit(&setup, tile->rect, visit_opaque, tile);
-    }
-}
-
-/* first: the setups are not made yet. */
-static inline __attribute__((always_inline)) void draw_transparent(TilePass *tile, uint32_t number,
-                                                                   bool first, SetupVisit visit)
-{
-    const Pass *pass = tile->pass;
-    const Bins *bins = &pass->transparent_bins;
-    const uint32_t *items = bins->item + bins->first[number];
-    size_t count = bins->first[number + 1] - bins->first[number];
-    for (size_t i = 0; i < count; i++) {
-        Setup once, *setup = i < tile->scratch->setup_capacity ? &tile->scratch->setups[i] : &once;
-        tile->primitive = items[i];
-        if (first || setup == &once)
-            pass_setup(pass, &pass->geometry.transparent.items[items[i]], setup);
-        setup_visit(setup, tile->rect, visit, tile);
-    }
-}
-
-/* Survivors gathered for the lighting pass; a batch is lit when it is full. */
-typedef struct Gathered {
-    const TilePass *tile;
-    bool seed_blend;
-    ShadeForm form;
-    int count;
-    int pixel[LANES];
-    ShadeBatch batch;
-} Gathered;
-
-static void light_batch(Gathered *gathered)
-{
-    const Pass *pass = gathered->tile->pass;
-    shade_batch(&pass->view, &gathered->form, &gathered->batch);
-    for (int lane = 0; lane < gathered->count; lane++) {
-        float color[4];
-        for (int i = 0; i < 4; i++)
-            color[i] = gathered->batch.source[i][lane];
-        void *accum = gathered->tile->scratch->accum + 16 * (size_t)gathered->pixel[lane];
-        if (gathered->seed_blend)
-            blend_opaque_seed(pass->desc->accum, color, accum);
-        else
-            blend_under(pass->desc->accum, color, accum);
-    }
-    gathered->count = 0;
-}
-
-static inline void gather(Gathered *gathered, int pixel, const Texel *texel)
-{
-    ShadeBatch *batch = &gathered->batch;
-    int lane = gathered->count++;
-    gathered->pixel[lane] = pixel;
-    for (int i = 0; i < 3; i++) {
-        batch->normal[i][lane] = texel->normal[i];
-        batch->position[i][lane] = texel->position[i];
-        batch->material[i][lane] = texel->material[i];
-    }
-    for (int i = 0; i < 4; i++)
-        batch->diffuse[i][lane] = texel->diffuse[i];
-    if (gathered->count == LANES)
-        light_batch(gathered);
-}
-
-/* Lights the winners in tile->index, at the depths in tile->key, which are of the transparent list
- * or of the opaque one, and blends them. */
-static void light(const TilePass *tile, bool transparent, PassCounts *counts)
-{
-    const Pass *pass = tile->pass;
-    const PrimitiveList *list = transparent ? &pass->geometry.transparent : &pass->geometry.opaque;
-    /* Lanes that the last batch leaves unused are lit too: zeros give finite values. */
-    Gathered gathered = {
-        .tile = tile,
-        .seed_blend = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED,
-        .form = pass_shade_form(pass, transparent),
+    const Bins *bins = transparent ? &pass->transparent_bins : &pass->opaque_bins;
+    *out = (TileList){
+        .list = transparent ? &pass->geometry.transparent : &pass->geometry.opaque,
+        .items = bins->item + bins->first[number],
+        .count = bins->first[number + 1] - bins->first[number],
+        .triangles = triangles,
     };
-    Setup setup;
-    uint32_t last = PRIMITIVE_NONE;
-    for (int y = tile->rect.y0; y <= tile->rect.y1; y++)
-        for (int x = tile->rect.x0; x <= tile->rect.x1; x++) {
-            int pixel = local_index(tile, x, y);
-            uint32_t index = tile->index[pixel];
-            if (index == PRIMITIVE_NONE)
-                continue;
-            if (index != last)
-                pass_setup(pass, &list->items[index], &setup);
-            last = index;
-            Texel texel;
-            fragment_shade(pass, &setup, &list->items[index], x, y, &texel);
-            texel_quantise(&pass->layout, &texel);
-            fragment_decode(pass, tile->key[pixel], x, y, &texel);
-            if (texel.diffuse[3] > SHADING_ALPHA_TEST) {
-                gather(&gathered, pixel, &texel);
-                counts->shaded++;
-            }
-        }
-    if (gathered.count > 0)
-        light_batch(&gathered);
+    out->resident = out->count <= TRIANGLES;
 }
 
-/* Pixels drawn, and of those at the previous peel's depth again. */
-static void count_drawn(const TilePass *tile, uint64_t *drawn, uint64_t *repeated)
+static __attribute__((noinline)) void set_up(const Tile *tile, TileList *list, size_t from)
+{
+    size_t end = list->count - from < TRIANGLES ? list->count : from + TRIANGLES;
+    list->made = 0;
+    for (size_t i = from; i < end; i++) {
+        TileTriangle *triangle = &list->triangles[list->made];
+        const Primitive *primitive = &list->list->items[list->items[i]];
+        pass_setup(tile->pass, primitive, &triangle->setup);
+        triangle->item = list->items[i];
+        triangle->masked = tile->pass->view.draws[primitive->draw].masked;
+        list->made += reduce_triangle(&tile->grid, triangle);
+    }
+    list->ready = list->resident;
+}
+
+/* Calls visit for every covered block of every triangle, in draw order. Inlined with visit. */
+TILE_INLINE void draw(Tile *tile, TileList *list, BlockVisit visit)
+{
+    for (size_t from = 0; from < list->count; from += TRIANGLES) {
+        if (!list->ready)
+            set_up(tile, list, from);
+        for (uint32_t i = 0; i < list->made; i++) {
+            const TileTriangle *triangle = &list->triangles[i];
+            int32_t index = list->resident ? (int32_t)i : (int32_t)triangle->item;
+            raster_triangle(&tile->grid, triangle, index, visit, tile);
+        }
+    }
+}
+
+/* ---- geometry passes ---- */
+
+/* Leaves out the lanes that the alpha mask discards. */
+static __attribute__((noinline)) uint32_t
+without_masked(const Tile *tile, const TileTriangle *triangle, int block, uint32_t bits)
+{
+    const Primitive *primitive = &tile->opaque.list->items[triangle->item];
+    uint32_t kept = 0;
+    for (; bits; bits &= bits - 1) {
+        int lane = __builtin_ctz(bits), pixel = block * LANES + lane;
+        if (!fragment_masked(tile->pass, &triangle->setup, primitive,
+                             grid_pixel_x(&tile->grid, pixel), grid_pixel_y(&tile->grid, pixel)))
+            kept |= 1u << lane;
+    }
+    return kept;
+}
+
+/* Lanes whose key is nearer than the one they are tested against: a < b, or a ≤ b where the last
+ * drawn of equal depths stays. */
+TILE_INLINE LanesMask nearer(const Tile *tile, LanesInt a, LanesInt b)
+{
+    return lanes_int_less(lanes_int_sub(a, lanes_int_all(tile->equal)), b);
+}
+
+TILE_INLINE void visit_opaque(void *context, const TileTriangle *triangle, int32_t index, int block,
+                              LanesMask covered, Lanes z)
+{
+    Tile *tile = context;
+    int32_t *keys = tile->scratch->opaque_key + block * LANES;
+    int32_t *indices = tile->scratch->opaque_index + block * LANES;
+    LanesInt key = block_key(&tile->grid, z), stored = lanes_int_load(keys);
+    LanesMask kept = lanes_mask_and(covered, nearer(tile, key, stored));
+    if (triangle->masked)
+        kept = lanes_mask_from_bits(without_masked(tile, triangle, block, lanes_mask_bits(kept)));
+    lanes_int_store(keys, lanes_int_select(kept, key, stored));
+    lanes_int_store(indices, lanes_int_select(kept, lanes_int_all(index), lanes_int_load(indices)));
+}
+
+/* Lanes that pass_hidden and, in later rounds, pass_peeled let pass, by the definition. */
+static __attribute__((noinline)) uint32_t
+visible_one_by_one(const Tile *tile, int block, uint32_t bits, LanesInt key, Lanes z, bool peeled)
+{
+    const Scratch *scratch = tile->scratch;
+    int32_t keys[LANES];
+    float depths[LANES];
+    uint32_t visible = 0;
+    lanes_int_store(keys, key);
+    lanes_store(depths, z);
+    for (; bits; bits &= bits - 1) {
+        int lane = __builtin_ctz(bits), pixel = block * LANES + lane;
+        FragmentDepth depth = {depths[lane], grid_depth_key(&tile->grid, keys[lane])};
+        int32_t opaque = scratch->opaque_key[pixel];
+        bool hidden = opaque == KEY_OUTSIDE ||
+                      pass_hidden(tile->pass, depth, grid_depth_key(&tile->grid, opaque));
+        if (!hidden &&
+            !(peeled && pass_peeled(tile->pass, depth,
+                                    grid_depth_key(&tile->grid, scratch->previous[pixel]))))
+            visible |= 1u << lane;
+    }
+    return visible;
+}
+
+/* Lanes in front of the opaque depth. */
+TILE_INLINE LanesMask in_front(const Tile *tile, int block, LanesMask covered, LanesInt key,
+                               Lanes z)
+{
+    if (tile->pass->desc->peel_test == PEEL_TEST_RAW)
+        return lanes_mask_from_bits(
+            visible_one_by_one(tile, block, lanes_mask_bits(covered), key, z, false));
+    const int32_t *opaque = tile->scratch->opaque_key + block * LANES;
+    return lanes_mask_and(covered, lanes_int_less(key, lanes_int_load(opaque)));
+}
+
+/* Lanes behind the layers of the rounds before. */
+TILE_INLINE LanesMask behind(const Tile *tile, int block, LanesMask lanes, LanesInt key, Lanes z)
+{
+    if (tile->one_by_one)
+        return lanes_mask_from_bits(
+            visible_one_by_one(tile, block, lanes_mask_bits(lanes), key, z, true));
+    const int32_t *previous = tile->scratch->previous + block * LANES;
+    return lanes_mask_and(lanes, lanes_int_less(lanes_int_load(previous), key));
+}
+
+TILE_INLINE int32_t *layer_of(const Scratch *scratch, int block, int layer)
+{
+    return scratch->layers + ((size_t)block * LAYERS + (size_t)layer) * 2 * LANES;
+}
+
+/* Insertion sort of every lane at once. What a lane carries is its fragment until that has found
+ * its place, then the layer that it pushed back. */
+TILE_INLINE void insert(Tile *tile, int block, LanesMask lanes, LanesInt key, LanesInt index)
+{
+    Scratch *scratch = tile->scratch;
+    LanesInt none = lanes_int_all(KEY_NONE);
+    key = lanes_int_select(lanes, key, none);
+    for (int layer = 0; layer < scratch->used[block]; layer++) {
+        int32_t *at = layer_of(scratch, block, layer);
+        LanesInt stored_key = lanes_int_load(at), stored_index = lanes_int_load(at + LANES);
+        LanesMask equal = lanes_int_equal(key, stored_key);
+        LanesMask less = lanes_int_less(key, stored_key);
+        LanesInt new_index = lanes_int_select(less, index, stored_index);
+        if (tile->equal)
+            new_index = lanes_int_select(equal, index, new_index);
+        lanes_int_store(at, lanes_int_select(less, key, stored_key));
+        lanes_int_store(at + LANES, new_index);
+        key = lanes_int_select(less, stored_key, lanes_int_select(equal, none, key));
+        index = lanes_int_select(less, stored_index, index);
+        if (lanes_mask_bits(lanes_int_less(key, none)) == 0)
+            return;
+    }
+    if (scratch->used[block] == tile->capacity) {
+        tile->overflowed = true;
+        return;
+    }
+    int32_t *at = layer_of(scratch, block, scratch->used[block]++);
+    lanes_int_store(at, key);
+    lanes_int_store(at + LANES, index);
+}
+
+TILE_INLINE void visit_transparent(void *context, const TileTriangle *triangle, int32_t index,
+                                   int block, LanesMask covered, Lanes z)
+{
+    (void)triangle;
+    Tile *tile = context;
+    LanesInt key = block_key(&tile->grid, z);
+    LanesMask lanes = in_front(tile, block, covered, key, z);
+    if (lanes_mask_bits(lanes) == 0)
+        return;
+    if (tile->later) {
+        lanes = behind(tile, block, lanes, key, z);
+        if (lanes_mask_bits(lanes) == 0)
+            return;
+    } else {
+        int32_t *fragments = tile->scratch->fragments + block * LANES;
+        LanesInt count = lanes_int_load(fragments);
+        LanesInt more = lanes_int_add(count, lanes_int_all(1));
+        lanes_int_store(fragments, lanes_int_select(lanes, more, count));
+    }
+    insert(tile, block, lanes, key, lanes_int_all(index));
+}
+
+TILE_INLINE void visit_remaining(void *context, const TileTriangle *triangle, int32_t index,
+                                 int block, LanesMask covered, Lanes z)
+{
+    (void)triangle;
+    (void)index;
+    Tile *tile = context;
+    LanesInt key = block_key(&tile->grid, z);
+    const int32_t *previous = tile->scratch->previous + block * LANES;
+    LanesMask lanes = lanes_mask_and(covered, lanes_int_less(lanes_int_load(previous), key));
+    lanes = in_front(tile, block, lanes, key, z);
+    if (tile->one_by_one)
+        lanes = behind(tile, block, lanes, key, z);
+    int32_t *remaining = tile->scratch->remaining + block * LANES;
+    LanesInt count = lanes_int_load(remaining);
+    LanesInt more = lanes_int_add(count, lanes_int_all(1));
+    lanes_int_store(remaining, lanes_int_select(lanes, more, count));
+}
+
+static __attribute__((noinline)) void draw_opaque(Tile *tile)
+{
+    draw(tile, &tile->opaque, visit_opaque);
+}
+
+static __attribute__((noinline)) void draw_transparent(Tile *tile)
+{
+    draw(tile, &tile->transparent, visit_transparent);
+}
+
+static __attribute__((noinline)) void draw_remaining(Tile *tile)
+{
+    draw(tile, &tile->transparent, visit_remaining);
+}
+
+/* ---- lighting passes ---- */
+
+static void light_begin(Tile *tile, const TileList *list, TileLight *out)
+{
+    Scratch *scratch = tile->scratch;
+    tile_light_begin(tile->pass, list == &tile->transparent, out);
+    out->grid = &tile->grid;
+    out->triangles = list->resident ? list->triangles : NULL;
+    out->cache = scratch->cache;
+    out->tag = (uint64_t)++scratch->lists_done << 32;
+    out->accum = scratch->accum;
+    out->counts = tile->counts;
+}
+
+static void light_opaque(Tile *tile)
+{
+    TileLight light;
+    light_begin(tile, &tile->opaque, &light);
+    LanesInt none = lanes_int_all(-1);
+    for (int block = 0; block < grid_blocks(&tile->grid); block++) {
+        LanesInt index = lanes_int_load(tile->scratch->opaque_index + block * LANES);
+        uint32_t bits = ~lanes_mask_bits(lanes_int_equal(index, none)) & LANES_FULL;
+        if (bits)
+            tile_light_block(&light, block, bits, index,
+                             lanes_int_load(tile->scratch->opaque_key + block * LANES));
+    }
+    tile_light_finish(&light);
+}
+
+static void light_layers(Tile *tile, int layers)
+{
+    TileLight light;
+    light_begin(tile, &tile->transparent, &light);
+    for (int layer = 0; layer < layers; layer++)
+        for (int block = 0; block < grid_blocks(&tile->grid); block++) {
+            if (tile->scratch->used[block] <= layer)
+                continue;
+            const int32_t *at = layer_of(tile->scratch, block, layer);
+            LanesInt key = lanes_int_load(at);
+            tile_light_block(&light, block,
+                             lanes_mask_bits(lanes_int_less(key, lanes_int_all(KEY_NONE))),
+                             lanes_int_load(at + LANES), key);
+        }
+    tile_light_finish(&light);
+}
+
+/* ---- peels ---- */
+
+/* Fragments of the round's layers, and of those at the key of the layer before again, which only
+ * the raw test lets pass. */
+static void count_drawn(const Tile *tile, uint64_t *drawn, uint64_t *repeated)
 {
     *drawn = *repeated = 0;
-    for (int i = 0; i < TILE_PIXELS; i++) {
-        if (tile->index[i] == PRIMITIVE_NONE)
-            continue;
-        ++*drawn;
-        *repeated += tile->previous && tile->key[i] == tile->previous[i];
+    for (int block = 0; block < grid_blocks(&tile->grid); block++)
+        for (int layer = 0; layer < tile->scratch->used[block]; layer++) {
+            LanesInt key = lanes_int_load(layer_of(tile->scratch, block, layer));
+            LanesInt previous = lanes_int_load(tile->scratch->previous + block * LANES);
+            LanesMask has = lanes_int_less(key, lanes_int_all(KEY_NONE));
+            *drawn += (uint64_t)__builtin_popcount(lanes_mask_bits(has));
+            if (tile->one_by_one && tile->later)
+                *repeated += (uint64_t)__builtin_popcount(
+                    lanes_mask_bits(lanes_mask_and(has, lanes_int_equal(key, previous))));
+        }
+}
+
+static int most_used(const Tile *tile)
+{
+    int most = 0;
+    for (int block = 0; block < grid_blocks(&tile->grid); block++)
+        most = tile->scratch->used[block] > most ? tile->scratch->used[block] : most;
+    return most;
+}
+
+/* What the next round lies behind: the last layer where the round filled all, elsewhere the far
+ * end, behind which there is nothing. */
+static void keep_previous(const Tile *tile)
+{
+    const Scratch *scratch = tile->scratch;
+    LanesInt far = lanes_int_all(tile->far), none = lanes_int_all(KEY_NONE);
+    for (int block = 0; block < grid_blocks(&tile->grid); block++) {
+        LanesInt key = far;
+        if (scratch->used[block] == tile->capacity) {
+            LanesInt last = lanes_int_load(layer_of(scratch, block, tile->capacity - 1));
+            key = lanes_int_select(lanes_int_less(last, none), last, far);
+        }
+        lanes_int_store(scratch->previous + block * LANES, key);
     }
 }
 
 /* Returns the number of peels. With the raw test a tile that brings nothing new goes on being
  * blended until no tile does (auto) or the limit: job->limit is then that number. */
-static int peel_tile(const TileJob *job, TilePass *tile, uint32_t number, PassCounts *counts)
+static int peel_tile(const TileJob *job, Tile *tile)
 {
-    Scratch *scratch = tile->scratch;
-    uint32_t far = depth_key_far(tile->pass->depth_format, tile->pass->desc->depth_range);
-    int peel = 0;
-    tile->previous = NULL;
-    tile->index = scratch->index;
-    for (; peel < job->limit; peel++) {
+    int peels = 0, most = tile->one_by_one ? 1 : LAYERS;
+    tile->later = false;
+    while (peels < job->limit) {
         uint64_t drawn, repeated;
-        tile->key = scratch->key[peel % 2];
-        fill(tile->key, far);
-        fill(tile->index, PRIMITIVE_NONE);
-        draw_transparent(tile, number, peel == 0, visit_transparent);
+        tile->capacity = job->limit - peels < most ? job->limit - peels : most;
+        tile->overflowed = false;
+        memset(tile->scratch->used, 0, (size_t)grid_blocks(&tile->grid));
+        draw_transparent(tile);
         count_drawn(tile, &drawn, &repeated);
         if (drawn == 0 || (job->dry && drawn == repeated))
             break;
-        counts->peeled += drawn;
-        counts->repeated += repeated;
+        int layers = most_used(tile);
+        tile->counts->peeled += drawn;
+        tile->counts->repeated += repeated;
         if (!job->dry)
-            light(tile, true, counts);
-        tile->previous = tile->key;
+            light_layers(tile, layers);
+        peels += layers;
+        keep_previous(tile);
+        tile->later = true;
+        if (!tile->one_by_one && !tile->overflowed)
+            break;
     }
-    return peel;
+    return peels;
 }
 
-static void count_tile(const TileJob *job, TilePass *tile, uint32_t number, int peels,
-                       PassCounts *counts)
+/* Whether the last round may have left fragments behind the last of all peels. */
+static bool may_leave(const TileJob *job, const Tile *tile, int peels)
+{
+    return pass_may_leave(job->pass, peels, job->limit) && (tile->one_by_one || tile->overflowed);
+}
+
+static void count_tile(const TileJob *job, Tile *tile, int peels)
 {
     Scratch *scratch = tile->scratch;
-    bool may_leave = pass_may_leave(job->pass, peels, job->limit);
-    if (may_leave) {
-        fill(scratch->remaining, 0);
-        draw_transparent(tile, number, false, visit_remaining);
+    int pixels = tile->grid.size * tile->grid.size;
+    bool left = may_leave(job, tile, peels);
+    PixelFormat format = job->pass->desc->accum;
+    if (left) {
+        memset(scratch->remaining, 0, (size_t)pixels * sizeof *scratch->remaining);
+        draw_remaining(tile);
     }
-    for (int y = tile->rect.y0; y <= tile->rect.y1; y++)
-        for (int x = tile->rect.x0; x <= tile->rect.x1; x++) {
-            int pixel = local_index(tile, x, y);
-            pass_count_fragments(counts, scratch->fragments[pixel]);
-            if (may_leave) {
-                float accum[4];
-                format_fetch(job->pass->desc->accum, scratch->accum + 16 * (size_t)pixel, accum);
-                pass_count_remaining(counts, scratch->remaining[pixel], accum[3]);
-            }
+    for (int pixel = 0; pixel < pixels; pixel++) {
+        pass_count_fragments(tile->counts, (uint32_t)scratch->fragments[pixel]);
+        if (left && scratch->remaining[pixel]) {
+            float accum[4];
+            if (format == FORMAT_RGBA32F)
+                accum[3] = accum_of(scratch->accum, pixel)[3 * LANES];
+            else
+                format_fetch(format, scratch->accum + 16 * (size_t)pixel, accum);
+            pass_count_remaining(tile->counts, (uint32_t)scratch->remaining[pixel], accum[3]);
         }
+    }
 }
 
-static void resolve_tile(const TileJob *job, const TilePass *tile)
+/* ---- the tile ---- */
+
+static void clear_tile(const Tile *tile)
+{
+    const Scratch *scratch = tile->scratch;
+    PixelFormat format = tile->pass->desc->accum;
+    int pixels = tile->grid.size * tile->grid.size;
+    memset(scratch->fragments, 0, (size_t)pixels * sizeof *scratch->fragments);
+    for (int pixel = 0; pixel < pixels; pixel++) {
+        bool inside = grid_inside(&tile->grid, grid_pixel_x(&tile->grid, pixel),
+                                  grid_pixel_y(&tile->grid, pixel));
+        scratch->opaque_key[pixel] = inside ? tile->far : KEY_OUTSIDE;
+        scratch->opaque_index[pixel] = -1;
+        if (format != FORMAT_RGBA32F)
+            blend_clear(format, scratch->accum + 16 * (size_t)pixel);
+    }
+    for (int block = 0; format == FORMAT_RGBA32F && block < grid_blocks(&tile->grid); block++)
+        for (int i = 0; i < 4; i++)
+            lanes_store(accum_of(scratch->accum, block * LANES) + i * LANES,
+                        lanes_all(i == 3 ? 1.0f : 0.0f));
+}
+
+static void resolve_tile(const TileJob *job, const Tile *tile)
 {
     const Pass *pass = tile->pass;
-    for (int y = tile->rect.y0; y <= tile->rect.y1; y++)
-        for (int x = tile->rect.x0; x <= tile->rect.x1; x++) {
-            int pixel = local_index(tile, x, y), row = pass->view.height - 1 - y;
-            float accum[4];
+    for (int pixel = 0; pixel < tile->grid.size * tile->grid.size; pixel++) {
+        int x = grid_pixel_x(&tile->grid, pixel), y = grid_pixel_y(&tile->grid, pixel);
+        if (!grid_inside(&tile->grid, x, y))
+            continue;
+        int row = pass->view.height - 1 - y;
+        float accum[4];
+        if (pass->desc->accum == FORMAT_RGBA32F)
+            for (int i = 0; i < 4; i++)
+                accum[i] = accum_of(tile->scratch->accum, pixel)[i * LANES];
+        else
             format_fetch(pass->desc->accum, tile->scratch->accum + 16 * (size_t)pixel, accum);
-            float opaque_alpha = tile->scratch->opaque_index[pixel] == PRIMITIVE_NONE ? 0.0f : 1.0f;
-            float *final = image_pixel(&job->frame->final, x, row);
-            shade_final(&pass->view, accum, pass_background_weight(pass, accum, opaque_alpha),
-                        final);
-            shade_display(pass->fused, final, image_pixel(&job->frame->display, x, row));
-        }
+        float opaque_alpha = tile->scratch->opaque_index[pixel] < 0 ? 0.0f : 1.0f;
+        float *final = image_pixel(&job->frame->final, x, row);
+        shade_final(&pass->view, accum, pass_background_weight(pass, accum, opaque_alpha), final);
+        shade_display(pass->fused, final, image_pixel(&job->frame->display, x, row));
+    }
+}
+
+static TileGrid tile_grid(const Pass *pass, uint32_t number)
+{
+    int columns = pass->tile / BLOCK_WIDTH;
+    return (TileGrid){
+        .rect = pass_tile_rect(pass, number),
+        .size = pass->tile,
+        .columns = columns,
+        .column_bits = __builtin_ctz((unsigned)columns),
+        .fused = pass->fused,
+        .reversed = pass->reversed,
+        .depth_format = pass->depth_format,
+    };
 }
 
 static __attribute__((noinline)) void render_tile(const TileJob *job, uint32_t number,
@@ -297,50 +502,73 @@ static __attribute__((noinline)) void render_tile(const TileJob *job, uint32_t n
 {
     const Pass *pass = job->pass;
     PassCounts *counts = &job->counts[number];
-    TilePass tile = {.pass = pass, .scratch = scratch, .rect = pass_tile_rect(pass, number)};
     *counts = (PassCounts){0};
-    fill(scratch->fragments, 0);
-    for (int i = 0; i < TILE_PIXELS; i++)
-        blend_clear(pass->desc->accum, scratch->accum + 16 * (size_t)i);
-
-    tile.key = scratch->opaque_key;
-    tile.index = scratch->opaque_index;
-    fill(tile.key, depth_key_far(pass->depth_format, pass->desc->depth_range));
-    fill(tile.index, PRIMITIVE_NONE);
-    draw_opaque(&tile, number);
-
-    job->peels[number] = peel_tile(job, &tile, number, counts);
+    Tile tile = {
+        .pass = pass,
+        .scratch = scratch,
+        .grid = tile_grid(pass, number),
+        .counts = counts,
+        .equal = pass->desc->depth_func == DEPTH_LEQUAL,
+        .one_by_one = pass->desc->peel_test == PEEL_TEST_RAW || pass->desc->bias > 0.0f,
+    };
+    tile.far = grid_key(&tile.grid, depth_key_far(pass->depth_format, pass->desc->depth_range));
+    list_begin(pass, false, number, scratch->triangles[0], &tile.opaque);
+    list_begin(pass, true, number, scratch->triangles[1], &tile.transparent);
+    clear_tile(&tile);
+    draw_opaque(&tile);
+    job->peels[number] = peel_tile(job, &tile);
     if (job->dry)
         return;
-    count_tile(job, &tile, number, job->peels[number], counts);
-    tile.key = scratch->opaque_key;
-    tile.index = scratch->opaque_index;
-    light(&tile, false, counts);
+    count_tile(job, &tile, job->peels[number]);
+    light_opaque(&tile);
     resolve_tile(job, &tile);
 }
 
-/* That one tile keeps: at most SETUPS_MAX. */
-static size_t tile_setups(const Pass *pass, uint32_t number)
+/* ---- the frame ---- */
+
+/* The worker's arrays in one block of memory, each at a multiple of 64 bytes. Returns its size;
+ * base NULL: only that. */
+static size_t scratch_layout(int tile_size, unsigned char *base, Scratch *out)
 {
-    const size_t *first = pass->transparent_bins.first;
-    size_t count = first[number + 1] - first[number];
-    return count < SETUPS_MAX ? count : SETUPS_MAX;
+    size_t pixels = (size_t)tile_size * (size_t)tile_size, at = 0;
+    const struct {
+        void **array;
+        size_t bytes;
+    } parts[] = {
+        {(void **)&out->opaque_key, pixels * sizeof *out->opaque_key},
+        {(void **)&out->opaque_index, pixels * sizeof *out->opaque_index},
+        {(void **)&out->previous, pixels * sizeof *out->previous},
+        {(void **)&out->fragments, pixels * sizeof *out->fragments},
+        {(void **)&out->remaining, pixels * sizeof *out->remaining},
+        {(void **)&out->layers, pixels * 2 * LAYERS * sizeof *out->layers},
+        {(void **)&out->used, pixels / LANES},
+        {(void **)&out->accum, pixels * 16},
+        {(void **)&out->triangles[0], TRIANGLES * sizeof *out->triangles[0]},
+        {(void **)&out->triangles[1], TRIANGLES * sizeof *out->triangles[1]},
+        {(void **)&out->cache, sizeof *out->cache},
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        if (base)
+            *parts[i].array = base + at;
+        at += (parts[i].bytes + 63) / 64 * 64;
+    }
+    return at + 64;
 }
 
-static size_t most_setups(const Pass *pass)
+static Result scratch_create(int tile_size, Scratch *out)
 {
-    size_t most = 0;
-    for (uint32_t tile = 0; tile < pass->tile_count; tile++)
-        most = tile_setups(pass, tile) > most ? tile_setups(pass, tile) : most;
-    return most;
+    out->memory = memory_array(1, scratch_layout(tile_size, NULL, out));
+    if (!out->memory)
+        return RESULT_NO_MEMORY;
+    scratch_layout(tile_size, out->memory + (64 - (uintptr_t)out->memory % 64), out);
+    return RESULT_OK;
 }
 
 static Result tile_task(void *context, uint32_t number, int worker)
 {
     const TileJob *job = context;
     Scratch *scratch = &job->scratch[worker];
-    Result result = memory_grow((void **)&scratch->setups, &scratch->setup_capacity,
-                                tile_setups(job->pass, number), sizeof *scratch->setups);
+    Result result = scratch->memory ? RESULT_OK : scratch_create(job->pass->tile, scratch);
     if (result != RESULT_OK)
         return result;
     uint32_t saved = op_enter();
@@ -377,8 +605,8 @@ Result TILE_RENDER(Pass *pass, Frame *frame)
 {
     int workers = pool_threads(pass->pool);
     TileJob job = {.pass = pass, .frame = frame};
-    Result result = pass_reserve(pass, (uint64_t)workers *
-                                           (sizeof(Scratch) + most_setups(pass) * sizeof(Setup)));
+    Scratch none;
+    Result result = pass_reserve(pass, (uint64_t)workers * scratch_layout(pass->tile, NULL, &none));
     if (result != RESULT_OK)
         return result;
     job.scratch = memory_array((size_t)workers, sizeof *job.scratch);
@@ -394,7 +622,7 @@ Result TILE_RENDER(Pass *pass, Frame *frame)
         frame->geometry_passes = pass_geometry_passes(pass, frame->peels);
     }
     for (int i = 0; job.scratch && i < workers; i++)
-        free(job.scratch[i].setups);
+        free(job.scratch[i].memory);
     free(job.scratch);
     free(job.counts);
     free(job.peels);

@@ -126,6 +126,11 @@ enum {
 enum {
     PASSES_MAX = 4096
 };
+enum {
+    TILE_MIN = 8,
+    TILE_DEFAULT = 64,
+    TILE_MAX = 256
+};
 #define RENDER_MEMORY_DEFAULT ((size_t)4 << 30) /* bytes */
 
 typedef struct RenderDesc {
@@ -160,6 +165,8 @@ typedef struct RenderDesc {
     RefPath ref_path;
     SimdChoice simd;
     bool bound;        /* truth: fill Frame.bound */
+    int tile;          /* ref: pixels per side, a power of two from TILE_MIN to TILE_MAX; 0:
+                        * TILE_DEFAULT; the bits are the same */
     int threads;       /* 0: one per processor */
     size_t max_memory; /* bytes a renderer may allocate for buffers; 0: 4 GiB */
 } RenderDesc;

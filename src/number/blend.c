@@ -1,25 +1,9 @@
 #include "number/blend.h"
 
-#include "number/op.h"
+#define LANES 1
+#include "number/blend_lanes.h"
 
 #include <assert.h>
-
-static void under32f(const float source[4], float dst[4])
-{
-    float transmittance = dst[3];
-    for (int i = 0; i < 3; i++)
-        dst[i] = op_canonical(op_add(op_mul(source[i], transmittance), dst[i]));
-    /* The factor ZERO is a multiplication by 0 in the driver too. */
-    dst[3] = op_canonical(
-        op_add(op_mul(source[3], 0.0f), op_mul(transmittance, op_sub(1.0f, source[3]))));
-}
-
-static void seed32f(const float source[4], float dst[4])
-{
-    float transmittance = dst[3];
-    for (int i = 0; i < 4; i++)
-        dst[i] = op_canonical(op_add(op_mul(source[i], transmittance), dst[i]));
-}
 
 /* a·b/(2^bits − 1) as the driver rounds it: not always correctly, see NUMBERS.md. bits ≤ 16. */
 static uint32_t multiply(int bits, uint32_t a, uint32_t b)
@@ -118,7 +102,7 @@ void blend_under(PixelFormat format, const float source[4], void *pixel)
 {
     switch (format) {
     case FORMAT_RGBA32F:
-        under32f(source, pixel);
+        blend_lanes_under(source, pixel);
         return;
     case FORMAT_RGBA16F:
         half_blend(under16f, source, pixel);
@@ -136,7 +120,7 @@ void blend_opaque_seed(PixelFormat format, const float source[4], void *pixel)
 {
     switch (format) {
     case FORMAT_RGBA32F:
-        seed32f(source, pixel);
+        blend_lanes_seed(source, pixel);
         return;
     case FORMAT_RGBA16F:
         half_blend(seed16f, source, pixel);

@@ -232,6 +232,19 @@ static inline LanesInt lanes_int_sub(LanesInt a, LanesInt b)
     return LANES_CALL(sub_epi32)(a, b);
 #endif
 }
+/* The low 32 bits of the product. */
+static inline LanesInt lanes_int_mul(LanesInt a, LanesInt b)
+{
+#if LANES == 1
+    return (int32_t)((uint32_t)a * (uint32_t)b);
+#elif LANES == 4
+    __m128i even = _mm_mul_epu32(a, b);
+    __m128i odd = _mm_mul_epu32(_mm_srli_epi64(a, 32), _mm_srli_epi64(b, 32));
+    return _mm_unpacklo_epi32(_mm_shuffle_epi32(even, 8), _mm_shuffle_epi32(odd, 8));
+#else
+    return LANES_CALL(mullo_epi32)(a, b);
+#endif
+}
 static inline LanesInt lanes_int_or(LanesInt a, LanesInt b)
 {
 #if LANES == 1
@@ -410,6 +423,33 @@ static inline Lanes lanes_select(LanesMask mask, Lanes yes, Lanes no)
 #else
     return lanes_from_bits(lanes_int_select(mask, lanes_bits(yes), lanes_bits(no)));
 #endif
+}
+
+/* op_canonical. */
+static inline Lanes lanes_canonical(Lanes a)
+{
+#if LANES == 1
+    return op_canonical(a);
+#else
+    LanesInt nan = lanes_int_all(0x7fc00000);
+#if LANES == 16
+    LanesMask is_nan = _mm512_cmp_ps_mask(a, a, _CMP_UNORD_Q);
+#elif LANES == 8
+    LanesMask is_nan = _mm256_castps_si256(_mm256_cmp_ps(a, a, _CMP_UNORD_Q));
+#else
+    LanesMask is_nan = _mm_castps_si128(_mm_cmpunord_ps(a, a));
+#endif
+    return lanes_select(is_nan, lanes_from_bits(nan), a);
+#endif
+}
+
+/* 0, 1, 2, … */
+static inline LanesInt lanes_int_counting(void)
+{
+    int32_t i[LANES];
+    for (int lane = 0; lane < LANES; lane++)
+        i[lane] = lane;
+    return lanes_int_load(i);
 }
 
 /* Stores the lanes whose bit is set one after the other at p, which has room for LANES values;

@@ -58,7 +58,7 @@ static void visit_count(void *context, const Setup *setup, int x, int y)
     const Pass *pass = stage->pass;
     const Lists *lists = stage->method;
     size_t pixel = stage_pixel(pass, x, y);
-    uint32_t tile = (uint32_t)y / TILE * pass->tile_columns + (uint32_t)x / TILE;
+    uint32_t tile = pass_tile_at(pass, x, y);
     lists->tile_first[tile]++;
     if (!pass_hidden(pass, pass_fragment_depth(pass, setup, x, y),
                      stage_key(&stage->opaque.depth, pixel)))
@@ -119,7 +119,7 @@ static void visit_fragment(void *context, const Setup *setup, int x, int y)
     const StageVisit *visit = context;
     const Pass *pass = visit->stage->pass;
     const Lists *lists = visit->stage->method;
-    uint32_t tile = (uint32_t)y / TILE * pass->tile_columns + (uint32_t)x / TILE;
+    uint32_t tile = pass_tile_at(pass, x, y);
     uint64_t number = lists->tile_next[tile]++;
     if (number >= lists->capacity)
         return;

@@ -89,7 +89,7 @@ static inline void *minmax_pixel(const Image *image, size_t pixel)
 
 static inline void minmax_count_shaded(Stage *stage, int x, int y)
 {
-    uint32_t tile = (uint32_t)(y / TILE) * stage->pass->tile_columns + (uint32_t)(x / TILE);
+    uint32_t tile = pass_tile_at(stage->pass, x, y);
     stage->tile_counts[tile].shaded++;
 }
 
