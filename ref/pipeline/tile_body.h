@@ -257,7 +257,11 @@ TILE_INLINE void visit_transparent(void *context, const TileTriangle *triangle, 
         LanesInt more = lanes_int_add(count, lanes_int_all(1));
         lanes_int_store(fragments, lanes_int_select(lanes, more, count));
     }
-    insert(tile, block, lanes, key, lanes_int_all(index));
+    /* What the raw test finds in front of the opaque depth may still be stored at the far end. */
+    if (tile->one_by_one)
+        lanes = lanes_mask_and(lanes, nearer(tile, key, lanes_int_all(tile->far)));
+    if (lanes_mask_bits(lanes))
+        insert(tile, block, lanes, key, lanes_int_all(index));
 }
 
 TILE_INLINE void visit_remaining(void *context, const TileTriangle *triangle, int32_t index,
