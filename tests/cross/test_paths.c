@@ -182,7 +182,7 @@ START_TEST(test_raw_test_stores_the_far_end)
     soup.camera.near = 1.0;
     soup.camera.far = 100.0;
     for (uint32_t i = 0; i < 5; i++)
-        soup_square(&soup, i, 99.9, -1, 0);
+        soup_square(&soup, i, 99.99, -1, 0);
     for (int func = DEPTH_LESS; func <= DEPTH_LEQUAL; func++) {
         RenderDesc desc = {.width = 40,
                            .height = 20,
