@@ -223,9 +223,10 @@ void passes_destroy(Passes *passes)
 
 /* ---- draws ---- */
 
-/* Texture units of shaders/surface.glsl. */
+/* Texture units of shaders/peel_test.glsl and surface.glsl. */
 enum {
-    UNIT_BASE_COLOR = 2,
+    UNIT_OPAQUE_DEPTH = 1,
+    UNIT_BASE_COLOR,
     UNIT_METALLIC_ROUGHNESS
 };
 
@@ -310,6 +311,13 @@ Result passes_draw_counted(const Passes *passes, GLuint program, bool transparen
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
     *samples = count;
     return context_check(passes->context, "geometry pass");
+}
+
+void passes_bind_opaque_depth(const Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    gl.BindTextureUnit(UNIT_OPAQUE_DEPTH,
+                       targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
 }
 
 void passes_fullscreen(const Passes *passes, GLuint program, GLuint framebuffer)

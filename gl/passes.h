@@ -63,6 +63,8 @@ void passes_depth_test(const RenderDesc *desc, DepthFunc func);
 /* As passes_draw_list, with the depth test on, counting the fragments that passed. */
 Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
                            uint64_t *samples);
+/* Binds the opaque depth where peel_test.glsl reads it: its integers where there are any. */
+void passes_bind_opaque_depth(const Passes *passes);
 /* One draw; its index range in triangles, 0 and UINT32_MAX for all. */
 void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, uint32_t first,
                        uint32_t count);

@@ -94,8 +94,7 @@ Result limits_trace(const Limits *limits, int peel, const char *what, GLuint fra
 
 void limits_bind(const Limits *limits, int peel)
 {
-    const Targets *targets = &limits->passes->targets;
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(limits->passes);
     limits_bind_previous(limits, peel);
 }
 

@@ -294,8 +294,7 @@ static void relink(const Lists *state, GLuint program)
 
 static Result sort_lists(Lists *state)
 {
-    const Targets *targets = &state->passes->targets;
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(state->passes);
     relink(state, state->visible);
     read_header(state);
     if (state->header.deepest >= PIXEL_NODES_MAX)

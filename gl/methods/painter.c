@@ -28,7 +28,7 @@ static Result paint(const Passes *passes, GLuint program, const Sort *sort, Fram
     const Targets *targets = &passes->targets;
     GLuint64 samples = 0;
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->plain_buffer);
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(passes);
     gl.Enable(GL_BLEND);
     gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
     gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);

@@ -98,7 +98,7 @@ static Result draw_peel(Peel *state, int peel, uint64_t *samples)
             return result;
         gl.BindTextureUnit(0, state->previous_code ? state->previous_code : previous->depth);
     }
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(passes);
     return passes_draw_counted(passes, peel > 0 ? state->next : state->first, true, samples);
 }
 

@@ -112,12 +112,12 @@ static void draw(const PeelId *state, GLuint program, GLuint framebuffer)
 /* Texture units of shaders/peel_id.frag.glsl. */
 static Result bind_previous(const PeelId *state, int peel)
 {
-    const Targets *targets = &state->passes->targets;
     const int other = 1 - (peel & 1);
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(state->passes);
     if (peel == 0)
         return RESULT_OK;
-    Result result = targets_copy_code(targets, state->layers[other].buffer, state->previous_code);
+    Result result = targets_copy_code(&state->passes->targets, state->layers[other].buffer,
+                                      state->previous_code);
     gl.BindTextureUnit(4, state->previous_code ? state->previous_code : state->layers[other].depth);
     gl.BindTextureUnit(5, state->rank[other]);
     return result;
