@@ -299,18 +299,28 @@ void passes_draw_list(const Passes *passes, GLuint program, bool transparent)
             passes_draw_range(passes, program, &passes->view->draws[i], 0, UINT32_MAX);
 }
 
-Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
-                           uint64_t *samples)
+void passes_begin_count(const Passes *passes)
+{
+    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+}
+
+Result passes_end_count(const Passes *passes, const char *what, uint64_t *samples)
 {
     GLuint64 count = 0;
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
-    gl.Enable(GL_DEPTH_TEST);
-    passes_draw_list(passes, program, transparent);
-    gl.Disable(GL_DEPTH_TEST);
     gl.EndQuery(GL_SAMPLES_PASSED);
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
     *samples = count;
-    return context_check(passes->context, "geometry pass");
+    return context_check(passes->context, what);
+}
+
+Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
+                           uint64_t *samples)
+{
+    passes_begin_count(passes);
+    gl.Enable(GL_DEPTH_TEST);
+    passes_draw_list(passes, program, transparent);
+    gl.Disable(GL_DEPTH_TEST);
+    return passes_end_count(passes, "geometry pass", samples);
 }
 
 void passes_bind_opaque_depth(const Passes *passes)

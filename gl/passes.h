@@ -60,7 +60,11 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
 void passes_draw_list(const Passes *passes, GLuint program, bool transparent);
 /* Makes func, mirrored where desc->depth_range is, the depth function: at first desc's own is. */
 void passes_depth_test(const RenderDesc *desc, DepthFunc func);
-/* As passes_draw_list, with the depth test on, counting the fragments that passed. */
+/* Counting the fragments that passed, of what is drawn between the two. The end fails when that
+ * has failed: `what` names it. */
+void passes_begin_count(const Passes *passes);
+Result passes_end_count(const Passes *passes, const char *what, uint64_t *samples);
+/* As passes_draw_list, with the depth test on, counted. */
 Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
                            uint64_t *samples);
 /* Binds the opaque depth where peel_test.glsl reads it: its integers where there are any. */

@@ -130,14 +130,13 @@ static Result draw_first(const Limits *limits)
 static Result any_layer(const Limits *limits, int which, bool *any)
 {
     const Passes *passes = limits->passes;
-    GLuint64 samples = 0;
+    uint64_t samples;
     gl.BindTextureUnit(0, limits->textures[which]);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_begin_count(passes);
     passes_fullscreen(passes, limits->count, limits->buffers[1 - which]);
-    gl.EndQuery(GL_SAMPLES_PASSED);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &samples);
+    Result result = passes_end_count(passes, "count of pixels with layers", &samples);
     *any = samples > 0;
-    return context_check(passes->context, "count of pixels with layers");
+    return result;
 }
 
 Result limits_peels(Limits *limits, Result (*draw_peel)(void *state, int peel), void *state)

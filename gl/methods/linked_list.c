@@ -311,7 +311,6 @@ static Result draw_layer(Lists *state, uint64_t *samples)
 {
     static const GLuint none[4] = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
     const Passes *passes = state->passes;
-    GLuint64 count = 0;
     progress_add();
     if (state->header.deepest > SORTED_MAX)
         relink(state, state->first);
@@ -319,15 +318,12 @@ static Result draw_layer(Lists *state, uint64_t *samples)
     gl.ClearNamedFramebufferuiv(state->layer_buffer, GL_COLOR, passes->targets.color_count, none);
     gl.DepthFunc(GL_ALWAYS);
     gl.Enable(GL_DEPTH_TEST);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_begin_count(passes);
     passes_fullscreen(passes, state->extract, state->layer_buffer);
-    gl.EndQuery(GL_SAMPLES_PASSED);
     gl.Disable(GL_DEPTH_TEST);
     passes_depth_test(passes->desc, passes->desc->depth_func);
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
-    *samples = count;
-    return context_check(passes->context, "list layer");
+    return passes_end_count(passes, "list layer", samples);
 }
 
 static Result trace_layer(const Lists *state, int peel)

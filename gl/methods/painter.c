@@ -26,20 +26,19 @@ static void draw_runs(const Passes *passes, GLuint program, const Sort *sort)
 static Result paint(const Passes *passes, GLuint program, const Sort *sort, Frame *out)
 {
     const Targets *targets = &passes->targets;
-    GLuint64 samples = 0;
+    uint64_t samples;
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->plain_buffer);
     passes_bind_opaque_depth(passes);
     gl.Enable(GL_BLEND);
     gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_begin_count(passes);
     draw_runs(passes, program, sort);
-    gl.EndQuery(GL_SAMPLES_PASSED);
+    Result result = passes_end_count(passes, "painter", &samples);
     gl.Disable(GL_BLEND);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &samples);
     progress_add();
     out->peels = samples > 0;
     out->geometry_passes = 1;
-    return context_check(passes->context, "painter");
+    return result;
 }
 
 static Result trace_layers(const Passes *passes)

@@ -128,18 +128,14 @@ static Result bind_previous(const PeelId *state, int peel)
 static Result draw_depth(PeelId *state, int peel, uint64_t *samples)
 {
     const Passes *passes = state->passes;
-    GLuint64 count = 0;
     Result result = bind_previous(state, peel);
     if (result != RESULT_OK)
         return result;
     passes_clear_layer(passes, &state->layers[peel & 1]);
     passes_depth_test(passes->desc, DEPTH_LEQUAL);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_begin_count(passes);
     draw(state, state->depth[peel > 0], state->depth_buffer[peel & 1]);
-    gl.EndQuery(GL_SAMPLES_PASSED);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
-    *samples = count;
-    return context_check(passes->context, "depth pass");
+    return passes_end_count(passes, "depth pass", samples);
 }
 
 static void draw_selected(PeelId *state, int peel)
