@@ -404,18 +404,34 @@ Result passes_finish(Passes *passes, int peels)
     else
         passes_blend_under();
     light(passes, passes->opaque_lighting, &passes->targets.opaque);
-    return passes_trace_accum(passes, peels + 1);
+    return passes_trace_accum(passes, "accum", peels + 1);
 }
 
-Result passes_trace_accum(Passes *passes, int step)
+static void read_accum(const Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
+                   passes->pixels);
+}
+
+Result passes_trace_accum(const Passes *passes, const char *name, int step)
 {
     const Targets *targets = &passes->targets;
     if (!passes->trace)
         return RESULT_OK;
-    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
-                   passes->pixels);
-    return trace_put(passes->trace, "accum", step, targets->accum_format, targets->width,
+    read_accum(passes);
+    return trace_put(passes->trace, name, step, targets->accum_format, targets->width,
                      targets->height, passes->pixels);
+}
+
+Result passes_trace_peel_accum(const Passes *passes, int peel)
+{
+    const Targets *targets = &passes->targets;
+    if (!passes->trace)
+        return RESULT_OK;
+    read_accum(passes);
+    return trace_put_peel(passes->trace, peel, "accum", targets->accum_format, targets->width,
+                          targets->height, passes->pixels);
 }
 
 void passes_resolve(Passes *passes)

@@ -93,8 +93,10 @@ void passes_light_layer(const Passes *passes, const Layer *layer);
 /* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says;
  * traces the accumulation as the step after `peels`. */
 Result passes_finish(Passes *passes, int peels);
-/* The second half of it, where the opaque colour is blended already. */
-Result passes_trace_accum(Passes *passes, int step);
+/* The accumulation as it is now to the trace, if there is one: under that name, or as that of a
+ * peel. */
+Result passes_trace_accum(const Passes *passes, const char *name, int step);
+Result passes_trace_peel_accum(const Passes *passes, int peel);
 /* Accumulation and background to the final image, and its display form. */
 void passes_resolve(Passes *passes);
 /* Blending as the source's under-blend. */

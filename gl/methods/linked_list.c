@@ -330,7 +330,6 @@ static Result trace_layer(const Lists *state, int peel)
 {
     const Passes *passes = state->passes;
     const Targets *targets = &passes->targets;
-    PixelFormat format = targets->accum_format;
     Result result =
         readback_trace_gbuffer(targets, state->layer.buffer, peel, passes->trace, passes->pixels);
     if (result != RESULT_OK)
@@ -339,11 +338,7 @@ static Result trace_layer(const Lists *state, int peel)
                    READBACK_TOP_DOWN, passes->pixels);
     result = trace_put_peel(passes->trace, peel, "id", FORMAT_R32UI, targets->width,
                             targets->height, passes->pixels);
-    if (result != RESULT_OK)
-        return result;
-    readback_color(targets, targets->plain_buffer, 0, format, READBACK_TOP_DOWN, passes->pixels);
-    return trace_put_peel(passes->trace, peel, "accum", format, targets->width, targets->height,
-                          passes->pixels);
+    return result == RESULT_OK ? passes_trace_peel_accum(passes, peel) : result;
 }
 
 static Result blend_layers(Lists *state, uint64_t *blended)

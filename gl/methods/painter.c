@@ -8,7 +8,6 @@
 #include "base/progress.h"
 #include "frame/sort.h"
 #include "program.h"
-#include "readback.h"
 
 /* Uniforms are set where the draw changes: sorted triangles often come one by one. */
 static void draw_runs(const Passes *passes, GLuint program, const Sort *sort)
@@ -41,17 +40,6 @@ static Result paint(const Passes *passes, GLuint program, const Sort *sort, Fram
     return result;
 }
 
-static Result trace_layers(const Passes *passes)
-{
-    const Targets *targets = &passes->targets;
-    if (!passes->trace)
-        return RESULT_OK;
-    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
-                   passes->pixels);
-    return trace_put(passes->trace, "painter.layers", 1, targets->accum_format, targets->width,
-                     targets->height, passes->pixels);
-}
-
 Result gl_painter(Passes *passes, Frame *out)
 {
     const PassesSource source = {
@@ -71,7 +59,7 @@ Result gl_painter(Passes *passes, Frame *out)
     if (result == RESULT_OK)
         result = paint(passes, program, &sort, out);
     if (result == RESULT_OK)
-        result = trace_layers(passes);
+        result = passes_trace_accum(passes, "painter.layers", 1);
     if (result == RESULT_OK)
         result = passes_finish(passes, out->peels);
     gl.DeleteProgram(program);

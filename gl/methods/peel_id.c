@@ -171,17 +171,11 @@ static Result trace_ids(const PeelId *state, int peel)
 static Result trace_peel(const PeelId *state, int peel)
 {
     const Passes *passes = state->passes;
-    const Targets *targets = &passes->targets;
-    PixelFormat format = targets->accum_format;
-    Result result = readback_trace_gbuffer(targets, state->layers[peel & 1].buffer, peel,
+    Result result = readback_trace_gbuffer(&passes->targets, state->layers[peel & 1].buffer, peel,
                                            passes->trace, passes->pixels);
     if (result == RESULT_OK)
         result = trace_ids(state, peel);
-    if (result != RESULT_OK)
-        return result;
-    readback_color(targets, targets->plain_buffer, 0, format, READBACK_TOP_DOWN, passes->pixels);
-    return trace_put_peel(passes->trace, peel, "accum", format, targets->width, targets->height,
-                          passes->pixels);
+    return result == RESULT_OK ? passes_trace_peel_accum(passes, peel) : result;
 }
 
 /* One peel. *more: false when nothing was left. */
