@@ -381,6 +381,11 @@ void passes_blend_under(void)
     gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
 }
 
+void passes_blend_over(void)
+{
+    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+}
+
 /* Where no position is stored, the depth takes its texture unit. */
 static void light(const Passes *passes, GLuint program, const Layer *layer)
 {

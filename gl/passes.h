@@ -99,7 +99,8 @@ Result passes_trace_accum(const Passes *passes, const char *name, int step);
 Result passes_trace_peel_accum(const Passes *passes, int peel);
 /* Accumulation and background to the final image, and its display form. */
 void passes_resolve(Passes *passes);
-/* Blending as the source's under-blend. */
+/* Blending as number/blend.h's blend_under and blend_over. */
 void passes_blend_under(void);
+void passes_blend_over(void);
 
 #endif

@@ -144,7 +144,7 @@ static void light(const Dual *state, int peel, int side)
     if (side == SIDE_FRONT)
         passes_blend_under();
     else
-        limits_blend_over();
+        passes_blend_over();
     passes_fullscreen(passes, state->light[side],
                       side == SIDE_FRONT ? passes->targets.plain_buffer : limits->back_buffer);
 }

@@ -103,11 +103,6 @@ void limits_bind_previous(const Limits *limits, int peel)
     gl.BindTextureUnit(UNIT_PREVIOUS_LIMITS, limits->textures[limits_previous(peel)]);
 }
 
-void limits_blend_over(void)
-{
-    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-}
-
 static Result draw_first(const Limits *limits)
 {
     const Passes *passes = limits->passes;

@@ -29,7 +29,7 @@ static Result paint(const Passes *passes, GLuint program, const Sort *sort, Fram
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->plain_buffer);
     passes_bind_opaque_depth(passes);
     gl.Enable(GL_BLEND);
-    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+    passes_blend_over();
     passes_begin_count(passes);
     draw_runs(passes, program, sort);
     Result result = passes_end_count(passes, "painter", &samples);
