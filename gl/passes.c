@@ -376,6 +376,17 @@ Result passes_opaque(Passes *passes)
     return result == RESULT_OK ? passes_end_opaque(passes) : result;
 }
 
+Result passes_peels(const Passes *passes, Result (*draw_peel)(void *state, int peel, bool *more),
+                    void *state)
+{
+    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
+    bool more = true;
+    Result result = RESULT_OK;
+    for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
+        result = draw_peel(state, peel, &more);
+    return result;
+}
+
 void passes_blend_under(void)
 {
     gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);

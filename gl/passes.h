@@ -88,6 +88,10 @@ Result passes_opaque(Passes *passes);
 /* What it does before it draws, with the opaque framebuffer bound, and after. */
 void passes_begin_opaque(const Passes *passes);
 Result passes_end_opaque(Passes *passes);
+/* Peels, up to desc->passes, until draw_peel, which gets state and the peel from 0, sets *more to
+ * false, or fails. */
+Result passes_peels(const Passes *passes, Result (*draw_peel)(void *state, int peel, bool *more),
+                    void *state);
 /* Shades a peel's G-buffer and blends it under the accumulation. */
 void passes_light_layer(const Passes *passes, const Layer *layer);
 /* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says;

@@ -62,6 +62,7 @@ typedef struct Lists {
     GLuint id, layer_buffer; /* primitive ids, and the layer's framebuffer with them */
     GLuint empty_buffer;     /* nothing to draw to but a depth that is not tested */
     Header header;
+    uint64_t blended; /* nodes that became a fragment of a layer */
 } Lists;
 
 /* ---- set-up ---- */
@@ -341,37 +342,31 @@ static Result trace_layer(const Lists *state, int peel)
     return result == RESULT_OK ? passes_trace_peel_accum(passes, peel) : result;
 }
 
-static Result blend_layers(Lists *state, uint64_t *blended)
+/* One layer. *more: false when there was none. */
+static Result blend_layer(void *context, int peel, bool *more)
 {
-    const Passes *passes = state->passes;
-    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
-    *blended = 0;
-    for (int peel = 0; peel < most; peel++) {
-        uint64_t samples;
-        Result result = draw_layer(state, &samples);
-        if (result != RESULT_OK || samples == 0)
-            return result;
-        *blended += samples;
-        state->frame->peels = peel + 1;
-        passes_light_layer(passes, &state->layer);
-        if (passes->trace)
-            result = trace_layer(state, peel);
-        if (result != RESULT_OK)
-            return result;
-    }
-    return RESULT_OK;
+    Lists *state = context;
+    uint64_t samples = 0;
+    Result result = draw_layer(state, &samples);
+    *more = result == RESULT_OK && samples > 0;
+    if (!*more)
+        return result;
+    state->blended += samples;
+    state->frame->peels = peel + 1;
+    passes_light_layer(state->passes, &state->layer);
+    return state->passes->trace ? trace_layer(state, peel) : RESULT_OK;
 }
 
 /* ---- the frame ---- */
 
-static void report(const Lists *state, uint64_t blended)
+static void report(const Lists *state)
 {
     Frame *frame = state->frame;
     frame->nodes = state->header.asked;
     frame->node_bytes = state->words * (uint32_t)sizeof(uint32_t);
     frame->layers.max = state->header.deepest;
     frame->layers.fragments = state->header.visible;
-    frame->layers.lost_to_pass_limit = state->header.visible - blended;
+    frame->layers.lost_to_pass_limit = state->header.visible - state->blended;
     if (state->header.asked <= state->capacity)
         return;
     frame->layers.lost_to_overflow = state->header.asked - state->capacity;
@@ -382,16 +377,15 @@ static void report(const Lists *state, uint64_t blended)
 
 static Result run(Lists *state)
 {
-    uint64_t blended = 0;
     Result result = build_lists(state);
     if (result == RESULT_OK)
         result = sort_lists(state);
     if (result == RESULT_OK)
-        result = blend_layers(state, &blended);
+        result = passes_peels(state->passes, blend_layer, state);
     if (result == RESULT_OK)
         result = passes_finish(state->passes, state->frame->peels);
     if (result == RESULT_OK)
-        report(state, blended);
+        report(state);
     return result;
 }
 

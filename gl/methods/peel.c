@@ -111,8 +111,9 @@ static Result trace_peel(const Peel *state, int peel)
 }
 
 /* One peel. *more: false when it brought nothing new and was left out. */
-static Result run_peel(Peel *state, int peel, bool *more)
+static Result run_peel(void *context, int peel, bool *more)
 {
+    Peel *state = context;
     const Passes *passes = state->passes;
     uint64_t samples = 0;
     *more = false;
@@ -134,23 +135,16 @@ static Result run_peel(Peel *state, int peel, bool *more)
     return passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-static Result run(Peel *state)
-{
-    Passes *passes = state->passes;
-    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
-    bool more = true;
-    Result result = passes_opaque(passes);
-    for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
-        result = run_peel(state, peel, &more);
-    return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;
-}
-
 Result gl_peel(Passes *passes, Frame *out)
 {
     Peel state = {.passes = passes, .frame = out};
     Result result = make(&state);
     if (result == RESULT_OK)
-        result = run(&state);
+        result = passes_opaque(passes);
+    if (result == RESULT_OK)
+        result = passes_peels(passes, run_peel, &state);
+    if (result == RESULT_OK)
+        result = passes_finish(passes, out->peels);
     destroy(&state);
     return result;
 }

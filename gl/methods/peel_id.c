@@ -179,8 +179,9 @@ static Result trace_peel(const PeelId *state, int peel)
 }
 
 /* One peel. *more: false when nothing was left. */
-static Result run_peel(PeelId *state, int peel, bool *more)
+static Result run_peel(void *context, int peel, bool *more)
 {
+    PeelId *state = context;
     uint64_t samples = 0;
     Result result = draw_depth(state, peel, &samples);
     *more = result == RESULT_OK && samples > 0;
@@ -192,23 +193,16 @@ static Result run_peel(PeelId *state, int peel, bool *more)
     return state->passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-static Result run(PeelId *state)
-{
-    Passes *passes = state->passes;
-    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
-    bool more = true;
-    Result result = passes_opaque(passes);
-    for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
-        result = run_peel(state, peel, &more);
-    return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;
-}
-
 Result gl_peel_id(Passes *passes, Frame *out)
 {
     PeelId state = {.passes = passes, .frame = out};
     Result result = make(&state);
     if (result == RESULT_OK)
-        result = run(&state);
+        result = passes_opaque(passes);
+    if (result == RESULT_OK)
+        result = passes_peels(passes, run_peel, &state);
+    if (result == RESULT_OK)
+        result = passes_finish(passes, out->peels);
     destroy(&state);
     return result;
 }
