@@ -54,8 +54,8 @@ typedef struct Header {
 typedef struct Lists {
     Passes *passes;
     Frame *frame;
-    GLuint list, visible, sort, first, extract; /* programs */
-    GLuint heads, nodes, materials;             /* buffers */
+    GLuint list, visible, extract, order; /* programs; order is built when lists are known */
+    GLuint heads, nodes, materials;       /* buffers */
     size_t heads_bytes, nodes_bytes, materials_bytes;
     uint32_t words, capacity, material_count; /* of a node; nodes; entries */
     Layer layer;
@@ -67,36 +67,52 @@ typedef struct Lists {
 
 /* ---- set-up ---- */
 
+static Result build_program(const Passes *passes, const char *name, const char *defines,
+                            const PassesSource *source, GLuint *out)
+{
+    Result result = passes_program(passes, name, defines, source, out);
+    if (result == RESULT_OK)
+        gl.ProgramUniform1ui(*out, UNIFORM_WIDTH, (GLuint)passes->desc->width);
+    return result;
+}
+
+/* Of a full-screen pass. */
+static Result build_full(const Passes *passes, const char *name, const char *defines, GLuint *out)
+{
+    const PassesSource source = {
+        .peel_test = true, .octahedral = true, .main = shader_linked_list_frag};
+    return build_program(passes, name, defines, &source, out);
+}
+
 static Result build_programs(Lists *state)
 {
     const Passes *passes = state->passes;
-    const char *order = passes->desc->depth_func == DEPTH_LEQUAL ? "#define GREATER_FIRST\n" : "";
     const PassesSource list = {
         .surface = true, .octahedral = true, .gbuffer = true, .main = shader_linked_list_frag};
-    const PassesSource full = {
-        .peel_test = true, .octahedral = true, .main = shader_linked_list_frag};
-    char defines[96];
-    Result result = passes_program(passes, "list", "#define PASS_LIST\n", &list, &state->list);
-    if (result == RESULT_OK)
-        result = passes_program(passes, "list visible", "#define PASS_VISIBLE\n", &full,
-                                &state->visible);
-    snprintf(defines, sizeof defines, "#define PASS_SORT\n%s", order);
-    if (result == RESULT_OK)
-        result = passes_program(passes, "list sort", defines, &full, &state->sort);
-    snprintf(defines, sizeof defines, "#define PASS_FIRST\n%s", order);
-    if (result == RESULT_OK)
-        result = passes_program(passes, "list first", defines, &full, &state->first);
+    char defines[64];
     snprintf(defines, sizeof defines, "#define PASS_EXTRACT\n#define OUT_ID %d\n",
              passes->targets.color_count);
+    Result result = build_program(passes, "list", "#define PASS_LIST\n", &list, &state->list);
     if (result == RESULT_OK)
-        result = passes_program(passes, "list extract", defines, &full, &state->extract);
-    if (result != RESULT_OK)
-        return result;
-    const GLuint programs[] = {state->list, state->visible, state->sort, state->first,
-                               state->extract};
-    for (int i = 0; i < 5; i++)
-        gl.ProgramUniform1ui(programs[i], UNIFORM_WIDTH, (GLuint)passes->desc->width);
-    return RESULT_OK;
+        result = build_full(passes, "list visible", "#define PASS_VISIBLE\n", &state->visible);
+    if (result == RESULT_OK)
+        result = build_full(passes, "list extract", defines, &state->extract);
+    return result;
+}
+
+static bool sorted_at_once(const Lists *state)
+{
+    return state->header.deepest <= SORTED_MAX;
+}
+
+/* The program that sorts lists, or the one that finds each layer's nodes. */
+static Result build_order(Lists *state)
+{
+    bool sorts = sorted_at_once(state);
+    char defines[64];
+    snprintf(defines, sizeof defines, "#define PASS_%s\n%s", sorts ? "SORT" : "FIRST",
+             state->passes->desc->depth_func == DEPTH_LEQUAL ? "#define GREATER_FIRST\n" : "");
+    return build_full(state->passes, sorts ? "list sort" : "list first", defines, &state->order);
 }
 
 static Result make_layer(Lists *state)
@@ -159,9 +175,8 @@ static void destroy(Lists *state)
 {
     gl.DeleteProgram(state->list);
     gl.DeleteProgram(state->visible);
-    gl.DeleteProgram(state->sort);
-    gl.DeleteProgram(state->first);
     gl.DeleteProgram(state->extract);
+    gl.DeleteProgram(state->order);
     gl.DeleteBuffers(1, &state->heads);
     gl.DeleteBuffers(1, &state->nodes);
     gl.DeleteBuffers(1, &state->materials);
@@ -302,8 +317,11 @@ static Result sort_lists(Lists *state)
         return result_fail(RESULT_UNSUPPORTED,
                            "linked-list: %u nodes in one pixel, expected fewer than %d",
                            state->header.deepest, PIXEL_NODES_MAX);
-    if (state->header.deepest <= SORTED_MAX)
-        relink(state, state->sort);
+    Result result = build_order(state);
+    if (result != RESULT_OK)
+        return result;
+    if (sorted_at_once(state))
+        relink(state, state->order);
     return context_check(state->passes->context, "list sort");
 }
 
@@ -313,8 +331,8 @@ static Result draw_layer(Lists *state, uint64_t *samples)
     static const GLuint none[4] = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
     const Passes *passes = state->passes;
     progress_add();
-    if (state->header.deepest > SORTED_MAX)
-        relink(state, state->first);
+    if (!sorted_at_once(state))
+        relink(state, state->order);
     passes_clear_layer(passes, &state->layer);
     gl.ClearNamedFramebufferuiv(state->layer_buffer, GL_COLOR, passes->targets.color_count, none);
     gl.DepthFunc(GL_ALWAYS);
