@@ -379,7 +379,7 @@ Result passes_opaque(Passes *passes)
 Result passes_peels(const Passes *passes, Result (*draw_peel)(void *state, int peel, bool *more),
                     void *state)
 {
-    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
+    int most = render_desc_pass_limit(passes->desc);
     bool more = true;
     Result result = RESULT_OK;
     for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)

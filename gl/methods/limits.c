@@ -137,7 +137,7 @@ static Result any_layer(const Limits *limits, int which, bool *any)
 Result limits_peels(Limits *limits, Result (*draw_peel)(void *state, int peel), void *state)
 {
     Frame *frame = limits->frame;
-    int most = limits->passes->desc->passes ? limits->passes->desc->passes : PASSES_MAX;
+    int most = render_desc_pass_limit(limits->passes->desc);
     bool any = false;
     progress_add();
     frame->geometry_passes = 1;

@@ -218,7 +218,7 @@ Result minmax_peels(Stage *stage)
 {
     MinMax *minmax = minmax_of(stage);
     Frame *frame = stage->frame;
-    int limit = stage->pass->desc->passes ? stage->pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(stage->pass->desc);
     clear_limits(&minmax->current);
     Result result = stage_run(stage, first_tile);
     if (result == RESULT_OK)

@@ -92,7 +92,7 @@ static Result draw_peel(Stage *stage, bool *stop)
 static Result peels(Stage *stage)
 {
     Peel *peel = stage->method;
-    int limit = stage->pass->desc->passes ? stage->pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(stage->pass->desc);
     for (peel->peel = 0; peel->peel < limit; peel->peel++) {
         bool stop;
         Result result = draw_peel(stage, &stop);

@@ -167,7 +167,7 @@ static Result peels(Stage *stage)
 {
     PeelId *state = stage->method;
     Frame *frame = stage->frame;
-    int limit = stage->pass->desc->passes ? stage->pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(stage->pass->desc);
     for (state->peel = 0; state->peel < limit; state->peel++) {
         uint64_t drawn;
         Result result = draw_peel(stage, &drawn);
