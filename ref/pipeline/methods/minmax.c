@@ -199,9 +199,7 @@ static Result run_peel(Stage *stage)
 {
     MinMax *minmax = minmax_of(stage);
     const MinMaxMethod *method = minmax->method;
-    Image previous = minmax->previous;
-    minmax->previous = minmax->current;
-    minmax->current = previous;
+    image_swap(&minmax->current, &minmax->previous);
     clear_limits(&minmax->current);
     clear_ids(&minmax->front_id);
     clear_ids(&minmax->back_id);

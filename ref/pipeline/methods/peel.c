@@ -106,9 +106,7 @@ static Result peels(Stage *stage)
             result = stage_put(stage, peel->peel, "accum", &stage->accum);
         if (result != RESULT_OK)
             return result;
-        Image current = peel->layer.depth;
-        peel->layer.depth = peel->previous_depth;
-        peel->previous_depth = current;
+        image_swap(&peel->layer.depth, &peel->previous_depth);
         stage->frame->peels = peel->peel + 1;
     }
     stage->frame->geometry_passes = pass_geometry_passes(stage->pass, stage->frame->peels);

@@ -140,13 +140,6 @@ static Result draw_peel(Stage *stage, uint64_t *drawn)
     return result;
 }
 
-static void swap(Image *a, Image *b)
-{
-    Image image = *a;
-    *a = *b;
-    *b = image;
-}
-
 /* Traces and blends the layer that was drawn. */
 static Result blend_peel(Stage *stage)
 {
@@ -158,8 +151,8 @@ static Result blend_peel(Stage *stage)
         result = stage_light(stage, &state->layer, true);
     if (result == RESULT_OK)
         result = stage_put(stage, state->peel, "accum", &stage->accum);
-    swap(&state->layer.depth, &state->previous_depth);
-    swap(&state->layer.primitive, &state->previous_id);
+    image_swap(&state->layer.depth, &state->previous_depth);
+    image_swap(&state->layer.primitive, &state->previous_id);
     return result;
 }
 
