@@ -52,7 +52,6 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
         {targets->depth_format == FORMAT_D24, "DEPTH_24"},
         {targets->depth_format == FORMAT_D16, "DEPTH_16"},
         {passes->lights.storage, "LIGHTS_STORAGE"},
-        {desc->accum == FORMAT_RGBA8, "ACCUM_8"},
         {desc->ggx == GGX_STABLE, "GGX_STABLE"},
         {desc->shading == SHADING_PHONG, "PHONG"},
         {targets->lit && targets->color_format[GBUFFER_DIFFUSE] == FORMAT_RGBA8, "CLAMP_COLOR"},
@@ -60,6 +59,9 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
     for (size_t i = 0; i < sizeof switches / sizeof *switches; i++)
         if (switches[i].on)
             at += sprintf(at, "#define %s\n", switches[i].name);
+    /* What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0. */
+    at += sprintf(at, "#define ACCUM_CLAMP(c) %s\n",
+                  desc->accum == FORMAT_RGBA8 ? "clamp(c, 0.0, 1.0)" : "(c)");
     if (desc->bias > 0.0f)
         at += sprintf(at, "#define BIAS %.9g\n", (double)desc->bias);
     snprintf(at, size - (size_t)(at - out), "%s", defines);
