@@ -599,12 +599,12 @@ static Result run(TileJob *job)
 {
     const Pass *pass = job->pass;
     Result result = RESULT_OK;
-    job->limit = pass->desc->passes ? pass->desc->passes : PASSES_MAX;
+    job->limit = render_desc_pass_limit(pass->desc);
     if (pass->desc->peel_test == PEEL_TEST_RAW && pass->desc->passes == 0) {
         job->dry = true;
         result = pool_run(pass->pool, pass->tile_count, tile_task, job);
         job->dry = false;
-        job->limit = most_peels(job);
+        job->limit = most_peels(job) > 0 ? most_peels(job) : 1; /* fragments are counted anyway */
     }
     if (result == RESULT_OK)
         result = pool_run(pass->pool, pass->tile_count, tile_task, job);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "scene/generate.h"
 
+#include "current_gltf.h"
 #include "small_gltf.h"
 
 #include <math.h>
@@ -94,24 +95,8 @@ START_TEST(data_files_are_current)
 {
     size_t count;
     const BuiltinScene *table = generate_table(&count);
-    for (size_t i = 0; i < count; i++) {
-        Scene scene;
-        char stored[256];
-        unsigned char *expected, *got;
-        size_t expected_count, got_count;
-        const char *path = scratch_path("fresh.gltf");
-        snprintf(stored, sizeof stored, "%s/data/scenes/%s.gltf", PEEL_SOURCE_DIR, table[i].name);
-        ck_assert_int_eq(table[i].generate(&scene), RESULT_OK);
-        ck_assert_int_eq(gltf_write(&scene, path), RESULT_OK);
-        ck_assert_int_eq(gltf_file_read(path, &expected, &expected_count), RESULT_OK);
-        ck_assert_msg(gltf_file_read(stored, &got, &got_count) == RESULT_OK, "%s",
-                      result_message());
-        ck_assert_msg(got_count == expected_count && memcmp(got, expected, got_count) == 0,
-                      "%s differs from what the generator writes", stored);
-        free(expected);
-        free(got);
-        scene_free(&scene);
-    }
+    for (size_t i = 0; i < count; i++)
+        current_gltf_check("scenes", table[i].name, table[i].generate);
 }
 END_TEST
 
