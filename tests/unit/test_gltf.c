@@ -40,6 +40,14 @@ static void same_matrix(const Matrix *a, const Matrix *b)
         ck_assert(x[i] == y[i]); /* −0 may come back as 0 */
 }
 
+static void same_light(const Light *a, const Light *b)
+{
+    ck_assert_mem_eq(a->position, b->position, sizeof a->position);
+    ck_assert_mem_eq(a->color, b->color, sizeof a->color);
+    ck_assert_mem_eq(a->attenuation, b->attenuation, sizeof a->attenuation);
+    ck_assert_float_bits(a->range, b->range);
+}
+
 static void same_scene(const Scene *a, const Scene *b)
 {
     ck_assert_uint_eq(a->mesh_count, b->mesh_count);
@@ -55,7 +63,7 @@ static void same_scene(const Scene *a, const Scene *b)
         same_matrix(&x->world, &y->world);
     }
     for (size_t i = 0; i < a->light_count; i++)
-        ck_assert_mem_eq(&a->lights[i], &b->lights[i], sizeof(Light));
+        same_light(&a->lights[i], &b->lights[i]);
     for (size_t i = 0; i < a->camera_count; i++) {
         const Camera *x = &a->cameras[i], *y = &b->cameras[i];
         ck_assert_str_eq(x->name, y->name);
