@@ -67,8 +67,8 @@ static BoundMetrics compare(const Scene *scene, const RenderDesc *asked, const c
 
 /* ---- built-in scenes ------------------------------------------------------------------------- */
 
-static const char *const names[] = {"teapot_hall", "teapot_hall_stress", "tutorial",
-                                    "chain",       "crossing_planes",    "alpha_ladder"};
+static const char *const names[] = {"teapot_hall",     "teapot_hall_stress", "tutorial", "chain",
+                                    "crossing_planes", "alpha_ladder",       "lamps"};
 /* The formats and forms that change the arithmetic, each at least once. */
 static const struct {
     const char *name;

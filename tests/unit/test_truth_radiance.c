@@ -113,6 +113,26 @@ START_TEST(test_back_light)
 }
 END_TEST
 
+/* The window's closed form, and nothing from the range on. */
+START_TEST(test_range)
+{
+    for (int i = 0; i < 64; i++) {
+        double distance = 0.25 + i / 8.0, range = 4.0, part = distance / range;
+        ViewLight light = {{0, 0, (float)(distance - 9)}, {1, 2, 4}, {0, 0, 1}, 0.0625f};
+        View view = {.light_count = 1, .lights = &light};
+        Surface surface = {{0, 0, -9}, {0.5, 0, 1}, material(0.5f, 0.5f), i & 1, false};
+        double rgb[3], whole[3], window = part < 1 ? 1 - part * part * part * part : 0;
+        radiance_shade(&view, &surface, rgb);
+        light.inverse_range2 = 0;
+        radiance_shade(&view, &surface, whole);
+        for (int k = 0; k < 3; k++) {
+            ck_assert_double_gt(whole[k], 0);
+            ck_assert_double_eq_tol(rgb[k], whole[k] * window, 1e-15 * whole[k]);
+        }
+    }
+}
+END_TEST
+
 /* The guards: no normal, a light on the surface, a surface at the eye, roughness 0. */
 START_TEST(test_guards)
 {
@@ -159,6 +179,7 @@ int main(void)
     tcase_add_test(tests, test_bisecting_normal);
     tcase_add_test(tests, test_unlit);
     tcase_add_test(tests, test_back_light);
+    tcase_add_test(tests, test_range);
     tcase_add_test(tests, test_guards);
     tcase_add_test(tests, test_display);
     suite_add_tcase(suite, tests);
