@@ -289,8 +289,8 @@ static void lamps_lights(Builder *builder)
     }
 }
 
-/* Panes through each other, upright on a floor, between lamps that do not reach far: the edges of
- * their light cross every surface. */
+/* Frosted panes through each other, upright on a floor, between lamps that do not reach far: the
+ * edges of their light cross every surface. */
 static Result generate_lamps(Scene *out)
 {
     static const float tints[2][4] = {{0.75f, 0.85f, 0.95f, 0.375f}, {0.95f, 0.85f, 0.7f, 0.5f}};
@@ -301,11 +301,11 @@ static Result generate_lamps(Scene *out)
     made = shapes_plane(16.0, 2.0, 1, 1, &mesh);
     uint32_t pane = builder_mesh(&builder, made, &mesh);
     uint32_t stone =
-        pieces_surface(&builder, "floor", (const float[4]){0.7f, 0.68f, 0.65f, 1.0f}, 0.7f, 0.0f);
+        pieces_surface(&builder, "floor", (const float[4]){0.7f, 0.68f, 0.65f, 1.0f}, 0.8f, 0.0f);
     Matrix lying = pieces_lying(0.0, 0.0, 0.0);
     pieces_place(&builder, "floor", floor, stone, &lying);
     for (int i = 0; i < 2; i++) {
-        uint32_t glass = pieces_surface(&builder, i ? "amber" : "blue", tints[i], 0.4f, 0.0f);
+        uint32_t glass = pieces_surface(&builder, i ? "amber" : "blue", tints[i], 0.6f, 0.0f);
         Matrix turn = matrix_rotate_y((0.01 + 0.5 * i) * PIECES_PI);
         for (int k = 0; k < 4; k++) {
             char name[32];
