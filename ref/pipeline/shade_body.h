@@ -93,6 +93,14 @@ static inline Lanes shade_mirror(const Surface *surface, Lanes u, Lanes directio
     return lanes_max(u, behind);
 }
 
+/* What a light's range leaves of it: exactly 0 beyond. */
+static inline Lanes shade_window(const ViewLight *light, Lanes distance2)
+{
+    Lanes one = lanes_all(1.0f);
+    Lanes q = lanes_min(lanes_mul(distance2, lanes_all(light->inverse_range2)), one);
+    return lanes_sub(one, lanes_mul(q, q));
+}
+
 static inline void shade_light(const ShadeForm *form, const Surface *surface,
                                const ViewLight *light, Lanes sum[3])
 {
@@ -130,6 +138,8 @@ static inline void shade_light(const ShadeForm *form, const Surface *surface,
         lanes_div(one, lanes_add(lanes_add(lanes_all(light->attenuation[0]),
                                            lanes_mul(lanes_all(light->attenuation[1]), distance)),
                                  lanes_mul(lanes_all(light->attenuation[2]), distance2)));
+    if (light->inverse_range2 > 0.0f)
+        attenuation = lanes_mul(attenuation, shade_window(light, distance2));
     for (int i = 0; i < 3; i++) {
         Lanes fresnel = lanes_add(surface->f0[i], lanes_mul(surface->one_minus_f0[i], x5));
         Lanes reflected =

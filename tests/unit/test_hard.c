@@ -108,6 +108,7 @@ START_TEST(files_mean_the_scenes)
             ck_assert_mem_eq(a->position, b->position, sizeof a->position);
             ck_assert_mem_eq(a->color, b->color, sizeof a->color);
             ck_assert_mem_eq(a->attenuation, b->attenuation, sizeof a->attenuation);
+            ck_assert_float_bits(a->range, b->range);
         }
         scene_free(&made);
         scene_free(&read);
