@@ -55,7 +55,7 @@ static float plane_distance(const Viewport *viewport, const Vertex *vertex, int 
 /* from + t·(to − from) for the clip position and every varying. */
 static Vertex cut_edge(const Viewport *viewport, float t, const Vertex *from, const Vertex *to)
 {
-    Vertex cut;
+    Vertex cut = {.outcode = 0};
     for (int i = 0; i < 4; i++)
         cut.clip[i] = op_add(from->clip[i], op_mul(t, op_sub(to->clip[i], from->clip[i])));
     for (int i = 0; i < 3; i++) {

@@ -47,6 +47,7 @@ static void transform_vertices(const Build *build, const Draw *draw, size_t firs
         for (int k = 0; k < 2; k++)
             vertex->uv[k] = mesh->uv ? mesh->uv[2 * (size_t)i + (size_t)k] : 0.0f;
         viewport_transform(&build->viewport, false, vertex);
+        vertex->outcode = clip_outcode(&build->viewport, vertex);
     }
 }
 
@@ -57,8 +58,9 @@ static Result emit(const Build *build, DrawOutput *output, const Vertex *const c
     Facing facing = setup_facing(corners, draw->flipped);
     if (facing == FACING_NONE || (facing == FACING_BACK && draw->cull_back))
         return RESULT_OK;
-    PixelRect box = setup_bounds(corners, build->view->width, build->view->height);
-    if (box.x0 > box.x1 || box.y0 > box.y1)
+    primitive.box = setup_bounds(corners, build->view->width, build->view->height);
+    primitive.swap = (facing == FACING_FRONT) != draw->flipped;
+    if (primitive.box.x0 > primitive.box.x1 || primitive.box.y0 > primitive.box.y1)
         return RESULT_OK;
     Result result = memory_grow((void **)&output->primitives, &output->primitive_capacity,
                                 output->primitive_count + 1, sizeof primitive);
@@ -89,7 +91,8 @@ static Result emit_clipped(const Build *build, DrawOutput *output, const Vertex 
         vertex[i] = &polygon[i].fresh;
     }
     for (int i = 2; i < count; i++) {
-        Primitive piece = {{index[i - 1], index[i], index[0]}, whole->id, whole->draw};
+        Primitive piece = {
+            .vertex = {index[i - 1], index[i], index[0]}, .id = whole->id, .draw = whole->draw};
         const Vertex *const piece_corners[3] = {vertex[i - 1], vertex[i], vertex[0]};
         Result result = emit(build, output, piece_corners, piece);
         if (result != RESULT_OK)
@@ -110,9 +113,8 @@ static Result assemble(const Build *build, uint32_t draw_index, DrawOutput *outp
             primitive.vertex[i] =
                 (uint32_t)(output->first_vertex + mesh->index[3 * (size_t)t + (size_t)i]);
             corners[i] = &build->geometry->vertices[primitive.vertex[i]];
-            unsigned outcode = clip_outcode(&build->viewport, corners[i]);
-            any |= outcode;
-            all &= outcode;
+            any |= corners[i]->outcode;
+            all &= corners[i]->outcode;
         }
         if (all)
             continue;

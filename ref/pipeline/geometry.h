@@ -17,13 +17,21 @@ typedef struct Vertex {
     int32_t x_fixed8, y_fixed8; /* window x − 0.5 and y − 0.5, in 1/256 pixel */
     float position[3];          /* smooth varyings, view space */
     float normal[3];
-    float uv[2]; /* 0 where the mesh has none */
+    float uv[2];      /* 0 where the mesh has none */
+    uint32_t outcode; /* clip_outcode; 0 of a vertex that the clipper made */
 } Vertex;
+
+/* Pixels x0 … x1 and y0 … y1, both ends included, window coordinates (y up). */
+typedef struct PixelRect {
+    int16_t x0, y0, x1, y1;
+} PixelRect;
 
 typedef struct Primitive {
     uint32_t vertex[3]; /* indices into Geometry.vertices, in the driver's order */
     uint32_t id;        /* the triangle it is, or is a piece of: see view.h */
-    uint32_t draw;      /* index into View.draws */
+    uint32_t draw : 31; /* index into View.draws */
+    uint32_t swap : 1;  /* its snapped area is negative: the first two vertices change places */
+    PixelRect box;      /* setup_bounds */
 } Primitive;
 
 /* Primitives of one list, in draw order: what has no area, faces away from a culled side or

@@ -11,14 +11,10 @@ typedef struct TileRange {
 
 static TileRange tiles_of(const Pass *pass, const Primitive *primitive)
 {
+    const PixelRect *box = &primitive->box;
     uint32_t tile = (uint32_t)pass->tile;
-    const Vertex *vertices = pass->geometry.vertices;
-    const Vertex *const corners[3] = {&vertices[primitive->vertex[0]],
-                                      &vertices[primitive->vertex[1]],
-                                      &vertices[primitive->vertex[2]]};
-    PixelRect box = setup_bounds(corners, pass->view.width, pass->view.height);
-    return (TileRange){(uint32_t)box.x0 / tile, (uint32_t)box.y0 / tile, (uint32_t)box.x1 / tile,
-                       (uint32_t)box.y1 / tile};
+    return (TileRange){(uint32_t)box->x0 / tile, (uint32_t)box->y0 / tile, (uint32_t)box->x1 / tile,
+                       (uint32_t)box->y1 / tile};
 }
 
 /* Counting sort by tile: counts, prefix sums, then the indices in draw order. */
@@ -125,18 +121,9 @@ PixelRect pass_tile_rect(const Pass *pass, uint32_t tile)
     int x0 = (int)(tile % pass->tile_columns) * pass->tile;
     int y0 = (int)(tile / pass->tile_columns) * pass->tile;
     int x1 = x0 + pass->tile - 1, y1 = y0 + pass->tile - 1;
-    return (PixelRect){x0, y0, x1 < pass->view.width ? x1 : pass->view.width - 1,
-                       y1 < pass->view.height ? y1 : pass->view.height - 1};
-}
-
-void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out)
-{
-    const Vertex *vertices = pass->geometry.vertices;
-    const Vertex *const corners[3] = {&vertices[primitive->vertex[0]],
-                                      &vertices[primitive->vertex[1]],
-                                      &vertices[primitive->vertex[2]]};
-    setup_triangle(corners, pass->view.draws[primitive->draw].flipped, pass->view.width,
-                   pass->view.height, out);
+    return (PixelRect){(int16_t)x0, (int16_t)y0,
+                       (int16_t)(x1 < pass->view.width ? x1 : pass->view.width - 1),
+                       (int16_t)(y1 < pass->view.height ? y1 : pass->view.height - 1)};
 }
 
 void pass_counts_add(PassCounts *sum, const PassCounts *tile)

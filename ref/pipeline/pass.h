@@ -47,7 +47,15 @@ static inline uint32_t pass_tile_at(const Pass *pass, int x, int y)
     return (uint32_t)(y / pass->tile) * pass->tile_columns + (uint32_t)(x / pass->tile);
 }
 
-void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out);
+static inline void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out)
+{
+    const Vertex *vertices = pass->geometry.vertices;
+    const Vertex *const corners[3] = {&vertices[primitive->vertex[0]],
+                                      &vertices[primitive->vertex[1]],
+                                      &vertices[primitive->vertex[2]]};
+    setup_make(corners, primitive->swap, pass->view.draws[primitive->draw].flipped, primitive->box,
+               out);
+}
 
 /* Of the lighting pass of a peel, or of the opaque surfaces. */
 static inline ShadeForm pass_shade_form(const Pass *pass, bool transparent)

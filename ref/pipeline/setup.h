@@ -16,11 +16,6 @@ typedef enum Facing {
     FACING_BACK
 } Facing;
 
-/* Pixels x0 … x1 and y0 … y1, both ends included, window coordinates (y up). */
-typedef struct PixelRect {
-    int x0, y0, x1, y1;
-} PixelRect;
-
 /* Value at pixel (x, y): fma(dy, y, fma(dx, x, origin)), integer x and y. */
 typedef struct Plane {
     float origin, dx, dy;
@@ -46,9 +41,22 @@ Facing setup_facing(const Vertex *const corners[3], bool flipped);
 /* Pixels that can be covered, inside width×height; empty when x0 > x1 or y0 > y1. */
 PixelRect setup_bounds(const Vertex *const corners[3], int width, int height);
 
-/* For a triangle whose facing is not FACING_NONE. */
-void setup_triangle(const Vertex *const corners[3], bool flipped, int width, int height,
-                    Setup *out);
+/* Of two snapped coordinates, wrapping as the driver does: a vertex with w = 0 snaps to INT32_MIN.
+ * Those of clipped vertices lie within the viewport, and every product here fits. */
+static inline int32_t setup_difference(int32_t a, int32_t b)
+{
+    return (int32_t)((uint32_t)a - (uint32_t)b);
+}
+
+static inline Edge setup_edge(const Vertex *from, const Vertex *to)
+{
+    int64_t a = setup_difference(from->y_fixed8, to->y_fixed8);
+    int64_t b = setup_difference(from->x_fixed8, to->x_fixed8);
+    int64_t c = (int64_t)((uint64_t)(a * from->x_fixed8) - (uint64_t)(b * from->y_fixed8));
+    if (a < 0 || (a == 0 && b >= 0))
+        c++;
+    return (Edge){a, b, c};
+}
 
 /* The plane through the values p[i] at setup->corner[i]. */
 static inline Plane setup_plane(const Setup *setup, float p0, float p1, float p2)
@@ -61,6 +69,36 @@ static inline Plane setup_plane(const Setup *setup, float p0, float p1, float p2
         op_sub(p0, op_add(op_mul(plane.dx, setup->x_origin), op_mul(plane.dy, setup->y_origin)));
     return plane;
 }
+
+/* For a triangle whose facing is not FACING_NONE. swap: its snapped area is negative. box:
+ * setup_bounds. */
+static inline void setup_make(const Vertex *const corners[3], bool swap, bool flipped,
+                              PixelRect box, Setup *out)
+{
+    const Vertex *v0 = corners[swap ? 1 : 0], *v1 = corners[swap ? 0 : 1], *v2 = corners[2];
+    out->corner[0] = v0;
+    out->corner[1] = v1;
+    out->corner[2] = v2;
+    out->front = swap != flipped;
+    out->box = box;
+    for (int i = 0; i < 3; i++)
+        out->edge[i] = setup_edge(out->corner[i], out->corner[(i + 1) % 3]);
+
+    float dx01 = op_sub(v0->window[0], v1->window[0]), dy01 = op_sub(v0->window[1], v1->window[1]);
+    float dx20 = op_sub(v2->window[0], v0->window[0]), dy20 = op_sub(v2->window[1], v0->window[1]);
+    float inverse_area = op_div(1.0f, op_sub(op_mul(dx01, dy20), op_mul(dy01, dx20)));
+    out->dx01 = op_mul(dx01, inverse_area);
+    out->dy01 = op_mul(dy01, inverse_area);
+    out->dx20 = op_mul(dx20, inverse_area);
+    out->dy20 = op_mul(dy20, inverse_area);
+    out->x_origin = op_sub(v0->window[0], 0.5f);
+    out->y_origin = op_sub(v0->window[1], 0.5f);
+    out->depth = setup_plane(out, v0->window[2], v1->window[2], v2->window[2]);
+}
+
+/* The same from the corners alone. */
+void setup_triangle(const Vertex *const corners[3], bool flipped, int width, int height,
+                    Setup *out);
 
 static inline float plane_at(bool fused, const Plane *plane, int x, int y)
 {

@@ -319,14 +319,14 @@ static void light_opaque(Tile *tile)
             tile_light_block(&light, block, bits, index,
                              lanes_int_load(tile->scratch->opaque_key + block * LANES));
     }
-    tile_light_finish(&light);
+    tile_light_flush(&light);
 }
 
 static void light_layers(Tile *tile, int layers)
 {
     TileLight light;
     light_begin(tile, &tile->transparent, &light);
-    for (int layer = 0; layer < layers; layer++)
+    for (int layer = 0; layer < layers; layer++) {
         for (int block = 0; block < grid_blocks(&tile->grid); block++) {
             if (tile->scratch->used[block] <= layer)
                 continue;
@@ -336,7 +336,8 @@ static void light_layers(Tile *tile, int layers)
                              lanes_mask_bits(lanes_int_less(key, lanes_int_all(KEY_NONE))),
                              lanes_int_load(at + LANES), key);
         }
-    tile_light_finish(&light);
+        tile_light_flush(&light);
+    }
 }
 
 /* ---- peels ---- */
@@ -417,27 +418,30 @@ static bool may_leave(const TileJob *job, const Tile *tile, int peels)
     return pass_may_leave(job->pass, peels, job->limit) && (tile->one_by_one || tile->overflowed);
 }
 
+/* Transmittance at a pixel. */
+static float stored_alpha(const Tile *tile, int pixel)
+{
+    float accum[4];
+    if (tile->pass->desc->accum == FORMAT_RGBA32F)
+        return accum_of(tile->scratch->accum, pixel)[3 * LANES];
+    format_fetch(tile->pass->desc->accum, tile->scratch->accum + 16 * (size_t)pixel, accum);
+    return accum[3];
+}
+
 static void count_tile(const TileJob *job, Tile *tile, int peels)
 {
     Scratch *scratch = tile->scratch;
     int pixels = tile->grid.size * tile->grid.size;
-    bool left = may_leave(job, tile, peels);
-    PixelFormat format = job->pass->desc->accum;
-    if (left) {
-        memset(scratch->remaining, 0, (size_t)pixels * sizeof *scratch->remaining);
-        draw_remaining(tile);
-    }
-    for (int pixel = 0; pixel < pixels; pixel++) {
+    for (int pixel = 0; pixel < pixels; pixel++)
         pass_count_fragments(tile->counts, (uint32_t)scratch->fragments[pixel]);
-        if (left && scratch->remaining[pixel]) {
-            float accum[4];
-            if (format == FORMAT_RGBA32F)
-                accum[3] = accum_of(scratch->accum, pixel)[3 * LANES];
-            else
-                format_fetch(format, scratch->accum + 16 * (size_t)pixel, accum);
-            pass_count_remaining(tile->counts, (uint32_t)scratch->remaining[pixel], accum[3]);
-        }
-    }
+    if (!may_leave(job, tile, peels))
+        return;
+    memset(scratch->remaining, 0, (size_t)pixels * sizeof *scratch->remaining);
+    draw_remaining(tile);
+    for (int pixel = 0; pixel < pixels; pixel++)
+        if (scratch->remaining[pixel])
+            pass_count_remaining(tile->counts, (uint32_t)scratch->remaining[pixel],
+                                 stored_alpha(tile, pixel));
 }
 
 /* ---- the tile ---- */
@@ -446,17 +450,19 @@ static void clear_tile(const Tile *tile)
 {
     const Scratch *scratch = tile->scratch;
     PixelFormat format = tile->pass->desc->accum;
-    int pixels = tile->grid.size * tile->grid.size;
+    const TileGrid *grid = &tile->grid;
+    int pixels = grid->size * grid->size;
+    bool cut = !grid_inside(grid, grid_pixel_x(grid, pixels - 1), grid_pixel_y(grid, pixels - 1));
     memset(scratch->fragments, 0, (size_t)pixels * sizeof *scratch->fragments);
-    for (int pixel = 0; pixel < pixels; pixel++) {
-        bool inside = grid_inside(&tile->grid, grid_pixel_x(&tile->grid, pixel),
-                                  grid_pixel_y(&tile->grid, pixel));
-        scratch->opaque_key[pixel] = inside ? tile->far : KEY_OUTSIDE;
-        scratch->opaque_index[pixel] = -1;
-        if (format != FORMAT_RGBA32F)
-            blend_clear(format, scratch->accum + 16 * (size_t)pixel);
-    }
-    for (int block = 0; format == FORMAT_RGBA32F && block < grid_blocks(&tile->grid); block++)
+    memset(scratch->opaque_index, 0xff, (size_t)pixels * sizeof *scratch->opaque_index);
+    for (int pixel = 0; pixel < pixels; pixel++)
+        scratch->opaque_key[pixel] =
+            cut && !grid_inside(grid, grid_pixel_x(grid, pixel), grid_pixel_y(grid, pixel))
+                ? KEY_OUTSIDE
+                : tile->far;
+    for (int pixel = 0; format != FORMAT_RGBA32F && pixel < pixels; pixel++)
+        blend_clear(format, scratch->accum + 16 * (size_t)pixel);
+    for (int block = 0; format == FORMAT_RGBA32F && block < grid_blocks(grid); block++)
         for (int i = 0; i < 4; i++)
             lanes_store(accum_of(scratch->accum, block * LANES) + i * LANES,
                         lanes_all(i == 3 ? 1.0f : 0.0f));

@@ -1,6 +1,6 @@
-/* The tile path's geometry and lighting shaders: fragments that a layer kept are gathered from its
- * blocks until there are LANES of them, and then shaded, lit and blended together. The operations
- * are those of fragment.h, shade.h and blend.h. */
+/* The tile path's geometry and lighting shaders: LANES fragments of one layer are shaded, lit and
+ * blended together, those of a full block at once, those of others gathered until there are enough.
+ * The operations are those of fragment.h, shade.h and blend.h. */
 #ifndef PEEL_REF_TILE_LIGHT_BODY_H
 #define PEEL_REF_TILE_LIGHT_BODY_H
 
@@ -50,7 +50,7 @@ typedef struct TileLight {
     bool transparent, seed_blend;
     bool exact; /* the G-buffer keeps every bit and the position */
     ShadeForm form;
-    Gathered gathered;
+    Gathered whole, parts; /* a full block; fragments of others */
 } TileLight;
 
 /* ---- geometry pass: varyings ---- */
@@ -183,8 +183,8 @@ static inline void batch_materials(const TileLight *light, const Lanes uv[2], La
 }
 
 /* What is left of one lane in the G-buffer's formats. */
-static __attribute__((noinline)) void lane_fetch(const TileLight *light, int lane,
-                                                 ShadeBatch *batch)
+static __attribute__((noinline)) void lane_fetch(const TileLight *light, const Gathered *gathered,
+                                                 int lane, ShadeBatch *batch)
 {
     const Pass *pass = light->pass;
     Texel texel = {0};
@@ -197,8 +197,8 @@ static __attribute__((noinline)) void lane_fetch(const TileLight *light, int lan
         texel.diffuse[i] = batch->diffuse[i][lane];
     fragment_encode(pass, &texel);
     texel_quantise(&pass->layout, &texel);
-    int pixel = light->gathered.pixel[lane];
-    fragment_decode(pass, grid_depth_key(light->grid, light->gathered.key[lane]),
+    int pixel = gathered->pixel[lane];
+    fragment_decode(pass, grid_depth_key(light->grid, gathered->key[lane]),
                     grid_pixel_x(light->grid, pixel), grid_pixel_y(light->grid, pixel), &texel);
     for (int i = 0; i < 3; i++) {
         batch->normal[i][lane] = texel.normal[i];
@@ -210,9 +210,9 @@ static __attribute__((noinline)) void lane_fetch(const TileLight *light, int lan
 }
 
 /* From the first LANES gathered fragments: fragment_surface, stored and fetched. */
-static inline void batch_surfaces(const TileLight *light, ShadeBatch *batch)
+static inline void batch_surfaces(const TileLight *light, const Gathered *gathered,
+                                  ShadeBatch *batch)
 {
-    const Gathered *gathered = &light->gathered;
     Lanes w = lanes_div(lanes_all(1.0f), lanes_load(gathered->inverse_w)), normal[3], uv[2];
     for (int i = 0; i < 3; i++) {
         lanes_store(batch->position[i], lanes_mul(lanes_load(gathered->varying[i]), w));
@@ -229,7 +229,7 @@ static inline void batch_surfaces(const TileLight *light, ShadeBatch *batch)
     batch_materials(light, uv, surface, batch);
     if (!light->exact)
         for (int lane = 0; lane < LANES; lane++)
-            lane_fetch(light, lane, batch);
+            lane_fetch(light, gathered, lane, batch);
 }
 
 /* ---- lighting pass ---- */
@@ -239,12 +239,21 @@ static inline float *accum_of(unsigned char *accum, int pixel)
     return (float *)(void *)accum + pixel / LANES * 4 * LANES + pixel % LANES;
 }
 
-/* Blends the lanes in order: two of them may be of one pixel. */
-static inline void blend_lanes_one_by_one(TileLight *light, const ShadeBatch *batch, uint32_t bits)
+TILE_INLINE void blend_float(const TileLight *light, const Lanes source[4], Lanes stored[4])
+{
+    if (light->seed_blend)
+        blend_lanes_seed(source, stored);
+    else
+        blend_lanes_under(source, stored);
+}
+
+/* Of the lanes in bits, each at its own pixel. */
+static inline void blend_parts(const TileLight *light, const int32_t *pixels,
+                               const ShadeBatch *batch, uint32_t bits)
 {
     PixelFormat format = light->pass->desc->accum;
     for (; bits; bits &= bits - 1) {
-        int lane = __builtin_ctz(bits), pixel = light->gathered.pixel[lane];
+        int lane = __builtin_ctz(bits), pixel = pixels[lane];
         float source[4], value[4], *stored = accum_of(light->accum, pixel);
         void *accum = light->accum + 16 * (size_t)pixel;
         for (int i = 0; i < 4; i++)
@@ -263,53 +272,25 @@ static inline void blend_lanes_one_by_one(TileLight *light, const ShadeBatch *ba
     }
 }
 
-/* Whether the batch is one whole block. */
-static inline bool one_block(const TileLight *light)
+/* Of a full block with 32-bit floats. */
+static inline void blend_block(const TileLight *light, int pixel, const ShadeBatch *batch,
+                               uint32_t bits)
 {
-    const int32_t *pixel = light->gathered.pixel;
-    LanesInt expected = lanes_int_add(lanes_int_all(pixel[0]), lanes_int_counting());
-    return pixel[0] % LANES == 0 &&
-           lanes_mask_bits(lanes_int_equal(lanes_int_load(pixel), expected)) == LANES_FULL;
-}
-
-static inline void blend_batch(TileLight *light, const ShadeBatch *batch, uint32_t bits)
-{
-    if (light->pass->desc->accum != FORMAT_RGBA32F || bits != LANES_FULL || !one_block(light)) {
-        blend_lanes_one_by_one(light, batch, bits);
-        return;
-    }
-    float *accum = accum_of(light->accum, light->gathered.pixel[0]);
-    Lanes source[4], stored[4];
+    float *accum = accum_of(light->accum, pixel);
+    LanesMask blended = lanes_mask_from_bits(bits);
+    Lanes source[4], before[4], after[4];
     for (int i = 0; i < 4; i++) {
         source[i] = lanes_load(batch->source[i]);
-        stored[i] = lanes_load(accum + i * LANES);
+        before[i] = after[i] = lanes_load(accum + i * LANES);
     }
-    if (light->seed_blend)
-        blend_lanes_seed(source, stored);
-    else
-        blend_lanes_under(source, stored);
+    blend_float(light, source, after);
     for (int i = 0; i < 4; i++)
-        lanes_store(accum + i * LANES, stored[i]);
+        lanes_store(accum + i * LANES, lanes_select(blended, after[i], before[i]));
 }
 
-/* Moves what is behind the first LANES fragments to the front. */
-static inline void gathered_advance(Gathered *gathered, int varyings)
+/* Lights the first LANES gathered fragments, or all of fewer. block: they are those of one. */
+static __attribute__((noinline)) void light_batch(TileLight *light, Gathered *gathered, bool block)
 {
-    gathered->count -= LANES;
-    if (gathered->count <= 0)
-        return;
-    lanes_store(gathered->inverse_w, lanes_load(gathered->inverse_w + LANES));
-    for (int i = 0; i < varyings; i++)
-        lanes_store(gathered->varying[i], lanes_load(gathered->varying[i] + LANES));
-    lanes_int_store(gathered->surface, lanes_int_load(gathered->surface + LANES));
-    lanes_int_store(gathered->pixel, lanes_int_load(gathered->pixel + LANES));
-    lanes_int_store(gathered->key, lanes_int_load(gathered->key + LANES));
-}
-
-/* Lights the first LANES gathered fragments, or all of fewer. */
-static __attribute__((noinline)) void light_batch(TileLight *light)
-{
-    Gathered *gathered = &light->gathered;
     ShadeBatch batch;
     for (int lane = gathered->count; lane < LANES; lane++) {
         /* Unused lanes are copies of the first, so that they are as harmless. */
@@ -320,14 +301,28 @@ static __attribute__((noinline)) void light_batch(TileLight *light)
         gathered->pixel[lane] = gathered->pixel[0];
         gathered->key[lane] = gathered->key[0];
     }
-    batch_surfaces(light, &batch);
+    batch_surfaces(light, gathered, &batch);
     uint32_t used = gathered->count < LANES ? (1u << gathered->count) - 1 : LANES_FULL;
     uint32_t alive = used & lanes_mask_bits(lanes_less(lanes_all(SHADING_ALPHA_TEST),
                                                        lanes_load(batch.diffuse[3])));
     shade_batch(&light->pass->view, &light->form, &batch);
-    blend_batch(light, &batch, alive);
+    if (block && light->pass->desc->accum == FORMAT_RGBA32F)
+        blend_block(light, gathered->pixel[0], &batch, alive);
+    else
+        blend_parts(light, gathered->pixel, &batch, alive);
     light->counts->shaded += (uint64_t)__builtin_popcount(alive);
-    gathered_advance(gathered, light->varyings);
+}
+
+/* Moves what is behind the first LANES fragments to the front. */
+static inline void advance(Gathered *gathered, int varyings)
+{
+    gathered->count -= LANES;
+    lanes_store(gathered->inverse_w, lanes_load(gathered->inverse_w + LANES));
+    for (int i = 0; i < varyings; i++)
+        lanes_store(gathered->varying[i], lanes_load(gathered->varying[i] + LANES));
+    lanes_int_store(gathered->surface, lanes_int_load(gathered->surface + LANES));
+    lanes_int_store(gathered->pixel, lanes_int_load(gathered->pixel + LANES));
+    lanes_int_store(gathered->key, lanes_int_load(gathered->key + LANES));
 }
 
 /* bits: lanes that have a fragment, of the triangle in index, at the depth in key. */
@@ -337,8 +332,9 @@ TILE_INLINE void gather_block(TileLight *light, int varyings, int block, uint32_
     BlockVaryings values;
     block_varyings(light, varyings, index, bits, block_x(grid_x(light->grid, block)),
                    block_y(grid_y(light->grid, block)), &values);
-    Gathered *gathered = &light->gathered;
-    int at = gathered->count;
+    bool full = bits == LANES_FULL;
+    Gathered *gathered = full ? &light->whole : &light->parts;
+    int at = full ? 0 : gathered->count;
     lanes_pack(gathered->inverse_w + at, bits, values.inverse_w);
     for (int i = 0; i < varyings; i++)
         lanes_pack(gathered->varying[i] + at, bits, values.varying[i]);
@@ -346,9 +342,12 @@ TILE_INLINE void gather_block(TileLight *light, int varyings, int block, uint32_
     lanes_int_pack(gathered->pixel + at, bits,
                    lanes_int_add(lanes_int_all(block * LANES), lanes_int_counting()));
     lanes_int_pack(gathered->key + at, bits, key);
-    gathered->count += __builtin_popcount(bits);
-    if (gathered->count >= LANES)
-        light_batch(light);
+    gathered->count = at + __builtin_popcount(bits);
+    if (gathered->count < LANES)
+        return;
+    light_batch(light, gathered, full);
+    if (!full)
+        advance(gathered, varyings);
 }
 
 static void tile_light_block(TileLight *light, int block, uint32_t bits, LanesInt index,
@@ -360,10 +359,12 @@ static void tile_light_block(TileLight *light, int block, uint32_t bits, LanesIn
         gather_block(light, VARYINGS - 2, block, bits, index, key);
 }
 
-static void tile_light_finish(TileLight *light)
+/* Lights what is left of a layer: the next one must find it blended. */
+static void tile_light_flush(TileLight *light)
 {
-    if (light->gathered.count > 0)
-        light_batch(light);
+    if (light->parts.count > 0)
+        light_batch(light, &light->parts, false);
+    light->parts.count = 0;
 }
 
 static inline bool any_texture(const Pass *pass)
@@ -386,7 +387,7 @@ static inline void tile_light_begin(const Pass *pass, bool transparent, TileLigh
                  layout->diffuse == FORMAT_RGBA32F && layout->material == FORMAT_RGBA32F;
     out->varyings = any_texture(pass) ? VARYINGS : VARYINGS - 2;
     out->form = pass_shade_form(pass, transparent);
-    out->gathered.count = 0;
+    out->parts.count = 0;
 }
 
 #endif

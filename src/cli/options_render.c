@@ -100,6 +100,7 @@ enum {
     KEY_FMA,
     KEY_GL,
     KEY_SIMD,
+    KEY_TILE,
     KEY_THREADS,
     KEY_MEMORY,
 };
@@ -173,10 +174,20 @@ static const struct argp_option render_options[] = {
     {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 1},
     {"simd", KEY_SIMD, "NAME", 0,
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
+    {"tile", KEY_TILE, "N", 0,
+     "Pixels a side of ref's tiles: a power of two, 8 to 256 (default 64); same bits", 1},
     {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
     {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
     {0},
 };
+
+static error_t parse_tile(const char *text, int *out)
+{
+    error_t error = options_count("--tile", text, TILE_MIN, TILE_MAX, out);
+    if (!error && (*out & (*out - 1)) != 0)
+        return options_error("--tile '%s': expected a power of two", text);
+    return error;
+}
 
 static error_t parse_passes(const char *text, RenderDesc *desc)
 {
@@ -362,6 +373,8 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         return options_fma(argument, &options->fma);
     case KEY_GL:
         return options_gl(argument);
+    case KEY_TILE:
+        return parse_tile(argument, &desc->tile);
     case KEY_THREADS:
         return options_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:

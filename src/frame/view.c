@@ -110,6 +110,11 @@ static Result check(const Scene *scene, const RenderDesc *desc)
     if (depth != FORMAT_D32F && depth != FORMAT_D24 && depth != FORMAT_D16)
         return result_fail(RESULT_BAD_INPUT, "depth in format %d: expected d32f, d24 or d16",
                            (int)depth);
+    if (desc->tile != 0 &&
+        (desc->tile < TILE_MIN || desc->tile > TILE_MAX || (desc->tile & (desc->tile - 1)) != 0))
+        return result_fail(RESULT_BAD_INPUT,
+                           "tiles of %d pixels: expected a power of two, %d to %d", desc->tile,
+                           TILE_MIN, TILE_MAX);
     if (!isfinite(desc->time) || fabs(desc->time) > 1e6)
         return result_fail(RESULT_BAD_INPUT, "time %g: expected at most 1e6 seconds", desc->time);
     if (scene_triangle_count(scene) >= UINT32_MAX)

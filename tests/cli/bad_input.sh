@@ -126,6 +126,7 @@ b'
     refuse 'camera' '--camera' render tutorial $out --camera nosuch
     refuse 'camera index' '--camera' render tutorial $out --camera 99
     refuse 'threads 0' '--threads' render tutorial $out --threads 0
+    refuse 'tile 12' '--tile' render tutorial $out --tile 12
     refuse 'two scenes' 'already given' render tutorial chain $out
     refuse 'no scene' 'no scene' render $out
     refuse 'no command' 'no command'

@@ -34,6 +34,7 @@ static RenderDesc paths_desc(Random *random)
     desc.unfused = random_bits(random) % 4 == 0;
     desc.threads = 1 + (int)(random_bits(random) % 8);
     desc.time = random_unit(random);
+    desc.tile = TILE_MIN << random_bits(random) % 6;
     desc.simd = (SimdChoice)(random_bits(random) % SIMD_COUNT);
     return desc;
 }
