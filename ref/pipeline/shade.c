@@ -15,7 +15,7 @@ bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, fl
     }
     for (int i = 0; i < 4; i++)
         batch.diffuse[i][0] = texel->diffuse[i];
-    shade_batch(view, form, &batch);
+    shade_batch_skipping(view, form, false, &batch);
     for (int i = 0; i < 4; i++)
         source[i] = batch.source[i][0];
     return true;

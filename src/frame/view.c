@@ -95,6 +95,19 @@ static ViewLight make_light(const Light *light, const Matrix *world_to_view)
     return out;
 }
 
+/* The light's distance from the eye, rounded up; infinite where shading it may overflow: the limits
+ * are those of scene_validate, and its tolerance. */
+static double light_reach(const ViewLight *light)
+{
+    const float *p = light->position, *falloff = light->attenuation;
+    bool bounded = falloff[0] + 0.01 * falloff[1] + 1e-4 * falloff[2] >= 0.99e-8;
+    for (int i = 0; i < 3; i++)
+        bounded =
+            bounded && light->color[i] >= 0.0f && light->color[i] <= 1e12f && falloff[i] >= 0.0f;
+    double length = sqrt((double)p[0] * p[0] + (double)p[1] * p[1] + (double)p[2] * p[2]);
+    return bounded ? 1.000001 * length + 1e-6 : INFINITY;
+}
+
 static Result check(const Scene *scene, const RenderDesc *desc)
 {
     if (desc->width < 1 || desc->height < 1 || desc->width > SIZE_MAX_PIXELS ||
@@ -187,8 +200,13 @@ static void add_lights(const Scene *scene, const RenderDesc *desc, const Matrix 
         out->light_count = 0;
     else if (desc->lights > 0 && (size_t)desc->lights < scene->light_count)
         out->light_count = (size_t)desc->lights;
-    for (size_t i = 0; i < out->light_count; i++)
+    double reach = 0.0;
+    for (size_t i = 0; i < out->light_count; i++) {
         out->lights[i] = make_light(&scene->lights[i], &world_to_view);
+        double distance = light_reach(&out->lights[i]);
+        reach = reach >= distance ? reach : distance; /* NaN stays */
+    }
+    out->light_reach = reach <= 0x1p47 ? (float)reach : 0.0f;
 }
 
 static Matrix make_projection(const Camera *camera, const RenderDesc *desc)

@@ -44,6 +44,9 @@ typedef struct View {
     Draw *draws; /* invisible instances (masked away, alpha < 1e-4) left out */
     size_t light_count;
     ViewLight *lights;
+    /* No light is further from the eye; 0 where that is not known, beyond 2^47, or a light is not
+     * what scene_validate wants, so that shading it may overflow. */
+    float light_reach;
     float ambient[3], background[3];
 } View;
 

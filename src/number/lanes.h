@@ -425,22 +425,22 @@ static inline Lanes lanes_select(LanesMask mask, Lanes yes, Lanes no)
 #endif
 }
 
+static inline LanesMask lanes_is_nan(Lanes a)
+{
+#if LANES == 1
+    return a != a;
+#elif LANES == 4
+    return _mm_castps_si128(_mm_cmpunord_ps(a, a));
+#elif LANES == 8
+    return _mm256_castps_si256(_mm256_cmp_ps(a, a, _CMP_UNORD_Q));
+#else
+    return _mm512_cmp_ps_mask(a, a, _CMP_UNORD_Q);
+#endif
+}
 /* op_canonical. */
 static inline Lanes lanes_canonical(Lanes a)
 {
-#if LANES == 1
-    return op_canonical(a);
-#else
-    LanesInt nan = lanes_int_all(0x7fc00000);
-#if LANES == 16
-    LanesMask is_nan = _mm512_cmp_ps_mask(a, a, _CMP_UNORD_Q);
-#elif LANES == 8
-    LanesMask is_nan = _mm256_castps_si256(_mm256_cmp_ps(a, a, _CMP_UNORD_Q));
-#else
-    LanesMask is_nan = _mm_castps_si128(_mm_cmpunord_ps(a, a));
-#endif
-    return lanes_select(is_nan, lanes_from_bits(nan), a);
-#endif
+    return lanes_select(lanes_is_nan(a), lanes_from_bits(lanes_int_all(0x7fc00000)), a);
 }
 
 /* 0, 1, 2, … */

@@ -1,0 +1,3 @@
+#define LANES       8
+#define BATCH_TABLE batch_avx2
+#include "batch_table.h"

@@ -1,0 +1,3 @@
+#define LANES       1
+#define BATCH_TABLE batch_scalar
+#include "batch_table.h"

@@ -1,0 +1,3 @@
+#define LANES       4
+#define BATCH_TABLE batch_sse2
+#include "batch_table.h"
