@@ -1,7 +1,6 @@
 #include "ref/pipeline/pass.h"
 
 #include "base/memory.h"
-#include "frame/shading.h"
 
 #include <stdlib.h>
 
@@ -152,11 +151,4 @@ void pass_counts_report(const PassCounts *counts, Frame *frame)
         counts->fragments - (counts->peeled - counts->repeated) - counts->remaining;
     frame->residual_max = counts->residual_max;
     frame->residual_pixels = counts->residual_pixels;
-}
-
-float pass_background_weight(const Pass *pass, const float accum[4], float opaque_alpha)
-{
-    if (pass->desc->opaque_blend == OPAQUE_BLEND_SEED && opaque_alpha > SHADING_ALPHA_TEST)
-        return 0.0f;
-    return accum[3];
 }
