@@ -1,6 +1,6 @@
-/* number/lanes_pow.h, ref/pipeline/shade_body.h and resolve_body.h: every width has the bits of the
- * scalar definition, and leaving lights out changes none. Bits of a NaN do not count: they are made
- * canonical where stored. */
+/* number/lanes.h and lanes_pow.h, ref/pipeline/shade_body.h and resolve_body.h: every width has the
+ * bits of the scalar definition, and leaving lights out changes none. Bits of a NaN do not count:
+ * they are made canonical where stored. */
 #include "testing.h"
 
 #include "base/random.h"
@@ -93,6 +93,43 @@ START_TEST(test_functions)
             check_functions(table[i], false, x);
             check_functions(table[i], true, x);
         }
+    }
+    op_leave(saved);
+}
+END_TEST
+
+/* Any bits, few exponents, so that roundings matter, and hostile. */
+static float pick_factor(Random *random)
+{
+    uint64_t bits = random_bits(random);
+    if (bits % 16 == 0)
+        return pick_hostile(random);
+    uint32_t word = (uint32_t)(bits >> 32);
+    return op_from_bits(bits % 4 ? (word & 0x81ffffff) | 0x3e000000 : word);
+}
+
+START_TEST(test_fma)
+{
+    const BatchTable *table[4];
+    int count = tables(table);
+    Random random = random_seed(8);
+    uint32_t saved = op_enter();
+    for (int number = 0; number < 50 * CASES; number++) {
+        float x[3][WIDEST], got[WIDEST];
+        for (int i = 0; i < 3 * WIDEST; i++)
+            x[i % 3][i / 3] = pick_factor(&random);
+        for (int i = 0; i < WIDEST && number % 2; i++) /* the sum cancels, or nearly */
+            x[2][i] = op_neg(op_mul(x[0][i], x[1][i]));
+        for (int k = 0; k < count; k++)
+            for (int i = 0; i < WIDEST; i++) {
+                if (i % table[k]->lanes == 0)
+                    table[k]->fma(x[0] + i, x[1] + i, x[2] + i, got + i);
+                float expected = op_fma(x[0][i], x[1][i], x[2][i]);
+                if (!same(got[i], expected))
+                    ck_abort_msg("%d lanes, fma(%a, %a, %a): got %a, expected %a", table[k]->lanes,
+                                 (double)x[0][i], (double)x[1][i], (double)x[2][i], (double)got[i],
+                                 (double)expected);
+            }
     }
     op_leave(saved);
 }
@@ -351,6 +388,7 @@ int main(void)
     Suite *suite = suite_create("batch");
     TCase *tests = tcase_create("batch");
     tcase_set_timeout(tests, 1800);
+    tcase_add_test(tests, test_fma);
     tcase_add_test(tests, test_functions);
     tcase_add_test(tests, test_shade);
     tcase_add_test(tests, test_select);
