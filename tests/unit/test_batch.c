@@ -120,6 +120,10 @@ START_TEST(test_fma)
             x[i % 3][i / 3] = pick_factor(&random);
         for (int i = 0; i < WIDEST && number % 2; i++) /* the sum cancels, or nearly */
             x[2][i] = op_neg(op_mul(x[0][i], x[1][i]));
+        /* 1 + 2^-24 and a little: in double one step above a tie of floats, and rounded up. */
+        x[0][number % WIDEST] = number % 2 ? -65281.0f : 65281.0f;
+        x[1][number % WIDEST] = 257.0f * 0x1p-24f;
+        x[2][number % WIDEST] = (number % 2 ? -1.0f : 1.0f) * (0x1p-52f - 0x1p-75f);
         for (int k = 0; k < count; k++)
             for (int i = 0; i < WIDEST; i++) {
                 if (i % table[k]->lanes == 0)
