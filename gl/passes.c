@@ -52,7 +52,7 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
         {targets->depth_format == FORMAT_D24, "DEPTH_24"},
         {targets->depth_format == FORMAT_D16, "DEPTH_16"},
         {passes->lights.storage, "LIGHTS_STORAGE"},
-        {desc->accum == FORMAT_RGBA8, "ACCUM_8"},
+        {passes->lights.ranges, "LIGHT_RANGES"},
         {desc->ggx == GGX_STABLE, "GGX_STABLE"},
         {desc->shading == SHADING_PHONG, "PHONG"},
         {targets->lit && targets->color_format[GBUFFER_DIFFUSE] == FORMAT_RGBA8, "CLAMP_COLOR"},
@@ -60,6 +60,9 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
     for (size_t i = 0; i < sizeof switches / sizeof *switches; i++)
         if (switches[i].on)
             at += sprintf(at, "#define %s\n", switches[i].name);
+    /* What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0. */
+    at += sprintf(at, "#define ACCUM_CLAMP(c) %s\n",
+                  desc->accum == FORMAT_RGBA8 ? "clamp(c, 0.0, 1.0)" : "(c)");
     if (desc->bias > 0.0f)
         at += sprintf(at, "#define BIAS %.9g\n", (double)desc->bias);
     snprintf(at, size - (size_t)(at - out), "%s", defines);
@@ -223,9 +226,10 @@ void passes_destroy(Passes *passes)
 
 /* ---- draws ---- */
 
-/* Texture units of shaders/surface.glsl. */
+/* Texture units of shaders/peel_test.glsl and surface.glsl. */
 enum {
-    UNIT_BASE_COLOR = 2,
+    UNIT_OPAQUE_DEPTH = 1,
+    UNIT_BASE_COLOR,
     UNIT_METALLIC_ROUGHNESS
 };
 
@@ -298,18 +302,35 @@ void passes_draw_list(const Passes *passes, GLuint program, bool transparent)
             passes_draw_range(passes, program, &passes->view->draws[i], 0, UINT32_MAX);
 }
 
-Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
-                           uint64_t *samples)
+void passes_begin_count(const Passes *passes)
+{
+    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+}
+
+Result passes_end_count(const Passes *passes, const char *what, uint64_t *samples)
 {
     GLuint64 count = 0;
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
-    gl.Enable(GL_DEPTH_TEST);
-    passes_draw_list(passes, program, transparent);
-    gl.Disable(GL_DEPTH_TEST);
     gl.EndQuery(GL_SAMPLES_PASSED);
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
     *samples = count;
-    return context_check(passes->context, "geometry pass");
+    return context_check(passes->context, what);
+}
+
+Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
+                           uint64_t *samples)
+{
+    passes_begin_count(passes);
+    gl.Enable(GL_DEPTH_TEST);
+    passes_draw_list(passes, program, transparent);
+    gl.Disable(GL_DEPTH_TEST);
+    return passes_end_count(passes, "geometry pass", samples);
+}
+
+void passes_bind_opaque_depth(const Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    gl.BindTextureUnit(UNIT_OPAQUE_DEPTH,
+                       targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
 }
 
 void passes_fullscreen(const Passes *passes, GLuint program, GLuint framebuffer)
@@ -358,9 +379,25 @@ Result passes_opaque(Passes *passes)
     return result == RESULT_OK ? passes_end_opaque(passes) : result;
 }
 
+Result passes_peels(const Passes *passes, Result (*draw_peel)(void *state, int peel, bool *more),
+                    void *state)
+{
+    int most = render_desc_pass_limit(passes->desc);
+    bool more = true;
+    Result result = RESULT_OK;
+    for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
+        result = draw_peel(state, peel, &more);
+    return result;
+}
+
 void passes_blend_under(void)
 {
     gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+void passes_blend_over(void)
+{
+    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
 }
 
 /* Where no position is stored, the depth takes its texture unit. */
@@ -386,18 +423,34 @@ Result passes_finish(Passes *passes, int peels)
     else
         passes_blend_under();
     light(passes, passes->opaque_lighting, &passes->targets.opaque);
-    return passes_trace_accum(passes, peels + 1);
+    return passes_trace_accum(passes, "accum", peels + 1);
 }
 
-Result passes_trace_accum(Passes *passes, int step)
+static void read_accum(const Passes *passes)
+{
+    const Targets *targets = &passes->targets;
+    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
+                   passes->pixels);
+}
+
+Result passes_trace_accum(const Passes *passes, const char *name, int step)
 {
     const Targets *targets = &passes->targets;
     if (!passes->trace)
         return RESULT_OK;
-    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
-                   passes->pixels);
-    return trace_put(passes->trace, "accum", step, targets->accum_format, targets->width,
+    read_accum(passes);
+    return trace_put(passes->trace, name, step, targets->accum_format, targets->width,
                      targets->height, passes->pixels);
+}
+
+Result passes_trace_peel_accum(const Passes *passes, int peel)
+{
+    const Targets *targets = &passes->targets;
+    if (!passes->trace)
+        return RESULT_OK;
+    read_accum(passes);
+    return trace_put_peel(passes->trace, peel, "accum", targets->accum_format, targets->width,
+                          targets->height, passes->pixels);
 }
 
 void passes_resolve(Passes *passes)

@@ -60,9 +60,15 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
 void passes_draw_list(const Passes *passes, GLuint program, bool transparent);
 /* Makes func, mirrored where desc->depth_range is, the depth function: at first desc's own is. */
 void passes_depth_test(const RenderDesc *desc, DepthFunc func);
-/* As passes_draw_list, with the depth test on, counting the fragments that passed. */
+/* Counting the fragments that passed, of what is drawn between the two. The end fails when that
+ * has failed: `what` names it. */
+void passes_begin_count(const Passes *passes);
+Result passes_end_count(const Passes *passes, const char *what, uint64_t *samples);
+/* As passes_draw_list, with the depth test on, counted. */
 Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
                            uint64_t *samples);
+/* Binds the opaque depth where peel_test.glsl reads it: its integers where there are any. */
+void passes_bind_opaque_depth(const Passes *passes);
 /* One draw; its index range in triangles, 0 and UINT32_MAX for all. */
 void passes_draw_range(const Passes *passes, GLuint program, const Draw *draw, uint32_t first,
                        uint32_t count);
@@ -82,16 +88,23 @@ Result passes_opaque(Passes *passes);
 /* What it does before it draws, with the opaque framebuffer bound, and after. */
 void passes_begin_opaque(const Passes *passes);
 Result passes_end_opaque(Passes *passes);
+/* Peels, up to desc->passes, until draw_peel, which gets state and the peel from 0, sets *more to
+ * false, or fails. */
+Result passes_peels(const Passes *passes, Result (*draw_peel)(void *state, int peel, bool *more),
+                    void *state);
 /* Shades a peel's G-buffer and blends it under the accumulation. */
 void passes_light_layer(const Passes *passes, const Layer *layer);
 /* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says;
  * traces the accumulation as the step after `peels`. */
 Result passes_finish(Passes *passes, int peels);
-/* The second half of it, where the opaque colour is blended already. */
-Result passes_trace_accum(Passes *passes, int step);
+/* The accumulation as it is now to the trace, if there is one: under that name, or as that of a
+ * peel. */
+Result passes_trace_accum(const Passes *passes, const char *name, int step);
+Result passes_trace_peel_accum(const Passes *passes, int peel);
 /* Accumulation and background to the final image, and its display form. */
 void passes_resolve(Passes *passes);
-/* Blending as the source's under-blend. */
+/* Blending as number/blend.h's blend_under and blend_over. */
 void passes_blend_under(void);
+void passes_blend_over(void);
 
 #endif

@@ -60,14 +60,13 @@ static void destroy(Sums *sums)
 static Result draw(Sums *sums, Frame *out)
 {
     const Passes *passes = sums->passes;
-    const Targets *targets = &passes->targets;
     const float zero[4] = {0}, start[4] = {sums->method->start};
     uint64_t samples;
     gl.ClearNamedFramebufferfv(sums->buffer, GL_COLOR, 0, zero);
     if (sums->count > 1)
         gl.ClearNamedFramebufferfv(sums->buffer, GL_COLOR, 1, start);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, sums->buffer);
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(passes);
     gl.Enable(GL_BLEND);
     gl.BlendFunc(GL_ONE, GL_ONE);
     if (sums->count > 1)

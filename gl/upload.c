@@ -154,6 +154,8 @@ Result upload_lights(Context *context, const View *view, LightBuffer *out)
         memcpy(packed + i * LIGHT_FLOATS, light->position, sizeof light->position);
         memcpy(packed + i * LIGHT_FLOATS + 4, light->color, sizeof light->color);
         memcpy(packed + i * LIGHT_FLOATS + 8, light->attenuation, sizeof light->attenuation);
+        packed[i * LIGHT_FLOATS + 11] = light->inverse_range2;
+        out->ranges |= light->inverse_range2 > 0.0f;
     }
     out->buffer = make_buffer(out->bytes);
     gl.NamedBufferSubData(out->buffer, 0, (GLsizeiptr)out->bytes, packed);

@@ -28,6 +28,7 @@ void upload_free_meshes(Meshes *meshes); /* leaves an empty one */
 typedef struct LightBuffer {
     GLuint buffer; /* 0 without lights */
     bool storage;
+    bool ranges; /* some light has one */
     size_t bytes;
 } LightBuffer;
 

@@ -10,7 +10,6 @@
 
 #include "methods/limits.h"
 #include "program.h"
-#include "readback.h"
 
 #include <stdio.h>
 
@@ -104,20 +103,14 @@ static Result trace_peel(const Dual *state, int peel)
         "back_normal", "back_diffuse", "back_material"};
     const Limits *limits = &state->limits;
     const Passes *passes = limits->passes;
-    const Targets *targets = &passes->targets;
     Result result = RESULT_OK;
     for (int i = 0; i < ATTACHMENTS && result == RESULT_OK; i++)
         result = limits_trace(limits, peel, names[i], state->buffers[limits_current(peel)], i,
                               i ? target_format(passes->desc, (i - 1) % TARGETS) : FORMAT_RG32F);
     if (result == RESULT_OK)
-        result =
-            limits_trace(limits, peel, "back_accum", limits->back_buffer, 0, targets->accum_format);
-    if (result != RESULT_OK || !passes->trace)
-        return result;
-    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
-                   passes->pixels);
-    return trace_put_peel(passes->trace, peel, "accum", targets->accum_format, targets->width,
-                          targets->height, passes->pixels);
+        result = limits_trace(limits, peel, "back_accum", limits->back_buffer, 0,
+                              passes->targets.accum_format);
+    return result == RESULT_OK ? passes_trace_peel_accum(passes, peel) : result;
 }
 
 static void draw_geometry(const Dual *state, int peel)
@@ -151,7 +144,7 @@ static void light(const Dual *state, int peel, int side)
     if (side == SIDE_FRONT)
         passes_blend_under();
     else
-        limits_blend_over();
+        passes_blend_over();
     passes_fullscreen(passes, state->light[side],
                       side == SIDE_FRONT ? passes->targets.plain_buffer : limits->back_buffer);
 }

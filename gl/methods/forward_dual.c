@@ -99,7 +99,7 @@ static Result draw_peel(void *context, int peel)
     gl.BlendEquation(GL_MAX);
     passes_draw_list(limits->passes, state->peel, true);
     gl.BlendEquation(GL_FUNC_ADD);
-    limits_blend_over();
+    passes_blend_over();
     gl.BindTextureUnit(0, state->back);
     passes_fullscreen(limits->passes, state->copy, limits->back_buffer);
     gl.Disable(GL_BLEND);

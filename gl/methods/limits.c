@@ -94,19 +94,13 @@ Result limits_trace(const Limits *limits, int peel, const char *what, GLuint fra
 
 void limits_bind(const Limits *limits, int peel)
 {
-    const Targets *targets = &limits->passes->targets;
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(limits->passes);
     limits_bind_previous(limits, peel);
 }
 
 void limits_bind_previous(const Limits *limits, int peel)
 {
     gl.BindTextureUnit(UNIT_PREVIOUS_LIMITS, limits->textures[limits_previous(peel)]);
-}
-
-void limits_blend_over(void)
-{
-    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
 }
 
 static Result draw_first(const Limits *limits)
@@ -131,20 +125,19 @@ static Result draw_first(const Limits *limits)
 static Result any_layer(const Limits *limits, int which, bool *any)
 {
     const Passes *passes = limits->passes;
-    GLuint64 samples = 0;
+    uint64_t samples;
     gl.BindTextureUnit(0, limits->textures[which]);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_begin_count(passes);
     passes_fullscreen(passes, limits->count, limits->buffers[1 - which]);
-    gl.EndQuery(GL_SAMPLES_PASSED);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &samples);
+    Result result = passes_end_count(passes, "count of pixels with layers", &samples);
     *any = samples > 0;
-    return context_check(passes->context, "count of pixels with layers");
+    return result;
 }
 
 Result limits_peels(Limits *limits, Result (*draw_peel)(void *state, int peel), void *state)
 {
     Frame *frame = limits->frame;
-    int most = limits->passes->desc->passes ? limits->passes->desc->passes : PASSES_MAX;
+    int most = render_desc_pass_limit(limits->passes->desc);
     bool any = false;
     progress_add();
     frame->geometry_passes = 1;

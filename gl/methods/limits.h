@@ -43,9 +43,6 @@ void limits_bind(const Limits *limits, int peel);
 /* The latter alone. */
 void limits_bind_previous(const Limits *limits, int peel);
 
-/* Blending as number/blend.h's over. */
-void limits_blend_over(void);
-
 /* Puts the back accumulation under the frame's. */
 void limits_compose(const Limits *limits);
 

@@ -54,48 +54,65 @@ typedef struct Header {
 typedef struct Lists {
     Passes *passes;
     Frame *frame;
-    GLuint list, visible, sort, first, extract; /* programs */
-    GLuint heads, nodes, materials;             /* buffers */
+    GLuint list, visible, extract, order; /* programs; order is built when lists are known */
+    GLuint heads, nodes, materials;       /* buffers */
     size_t heads_bytes, nodes_bytes, materials_bytes;
     uint32_t words, capacity, material_count; /* of a node; nodes; entries */
     Layer layer;
     GLuint id, layer_buffer; /* primitive ids, and the layer's framebuffer with them */
     GLuint empty_buffer;     /* nothing to draw to but a depth that is not tested */
     Header header;
+    uint64_t blended; /* nodes that became a fragment of a layer */
 } Lists;
 
 /* ---- set-up ---- */
 
+static Result build_program(const Passes *passes, const char *name, const char *defines,
+                            const PassesSource *source, GLuint *out)
+{
+    Result result = passes_program(passes, name, defines, source, out);
+    if (result == RESULT_OK)
+        gl.ProgramUniform1ui(*out, UNIFORM_WIDTH, (GLuint)passes->desc->width);
+    return result;
+}
+
+/* Of a full-screen pass. */
+static Result build_full(const Passes *passes, const char *name, const char *defines, GLuint *out)
+{
+    const PassesSource source = {
+        .peel_test = true, .octahedral = true, .main = shader_linked_list_frag};
+    return build_program(passes, name, defines, &source, out);
+}
+
 static Result build_programs(Lists *state)
 {
     const Passes *passes = state->passes;
-    const char *order = passes->desc->depth_func == DEPTH_LEQUAL ? "#define GREATER_FIRST\n" : "";
     const PassesSource list = {
         .surface = true, .octahedral = true, .gbuffer = true, .main = shader_linked_list_frag};
-    const PassesSource full = {
-        .peel_test = true, .octahedral = true, .main = shader_linked_list_frag};
-    char defines[96];
-    Result result = passes_program(passes, "list", "#define PASS_LIST\n", &list, &state->list);
-    if (result == RESULT_OK)
-        result = passes_program(passes, "list visible", "#define PASS_VISIBLE\n", &full,
-                                &state->visible);
-    snprintf(defines, sizeof defines, "#define PASS_SORT\n%s", order);
-    if (result == RESULT_OK)
-        result = passes_program(passes, "list sort", defines, &full, &state->sort);
-    snprintf(defines, sizeof defines, "#define PASS_FIRST\n%s", order);
-    if (result == RESULT_OK)
-        result = passes_program(passes, "list first", defines, &full, &state->first);
+    char defines[64];
     snprintf(defines, sizeof defines, "#define PASS_EXTRACT\n#define OUT_ID %d\n",
              passes->targets.color_count);
+    Result result = build_program(passes, "list", "#define PASS_LIST\n", &list, &state->list);
     if (result == RESULT_OK)
-        result = passes_program(passes, "list extract", defines, &full, &state->extract);
-    if (result != RESULT_OK)
-        return result;
-    const GLuint programs[] = {state->list, state->visible, state->sort, state->first,
-                               state->extract};
-    for (int i = 0; i < 5; i++)
-        gl.ProgramUniform1ui(programs[i], UNIFORM_WIDTH, (GLuint)passes->desc->width);
-    return RESULT_OK;
+        result = build_full(passes, "list visible", "#define PASS_VISIBLE\n", &state->visible);
+    if (result == RESULT_OK)
+        result = build_full(passes, "list extract", defines, &state->extract);
+    return result;
+}
+
+static bool sorted_at_once(const Lists *state)
+{
+    return state->header.deepest <= SORTED_MAX;
+}
+
+/* The program that sorts lists, or the one that finds each layer's nodes. */
+static Result build_order(Lists *state)
+{
+    bool sorts = sorted_at_once(state);
+    char defines[64];
+    snprintf(defines, sizeof defines, "#define PASS_%s\n%s", sorts ? "SORT" : "FIRST",
+             state->passes->desc->depth_func == DEPTH_LEQUAL ? "#define GREATER_FIRST\n" : "");
+    return build_full(state->passes, sorts ? "list sort" : "list first", defines, &state->order);
 }
 
 static Result make_layer(Lists *state)
@@ -158,9 +175,8 @@ static void destroy(Lists *state)
 {
     gl.DeleteProgram(state->list);
     gl.DeleteProgram(state->visible);
-    gl.DeleteProgram(state->sort);
-    gl.DeleteProgram(state->first);
     gl.DeleteProgram(state->extract);
+    gl.DeleteProgram(state->order);
     gl.DeleteBuffers(1, &state->heads);
     gl.DeleteBuffers(1, &state->nodes);
     gl.DeleteBuffers(1, &state->materials);
@@ -294,16 +310,18 @@ static void relink(const Lists *state, GLuint program)
 
 static Result sort_lists(Lists *state)
 {
-    const Targets *targets = &state->passes->targets;
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(state->passes);
     relink(state, state->visible);
     read_header(state);
     if (state->header.deepest >= PIXEL_NODES_MAX)
         return result_fail(RESULT_UNSUPPORTED,
                            "linked-list: %u nodes in one pixel, expected fewer than %d",
                            state->header.deepest, PIXEL_NODES_MAX);
-    if (state->header.deepest <= SORTED_MAX)
-        relink(state, state->sort);
+    Result result = build_order(state);
+    if (result != RESULT_OK)
+        return result;
+    if (sorted_at_once(state))
+        relink(state, state->order);
     return context_check(state->passes->context, "list sort");
 }
 
@@ -312,30 +330,25 @@ static Result draw_layer(Lists *state, uint64_t *samples)
 {
     static const GLuint none[4] = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
     const Passes *passes = state->passes;
-    GLuint64 count = 0;
     progress_add();
-    if (state->header.deepest > SORTED_MAX)
-        relink(state, state->first);
+    if (!sorted_at_once(state))
+        relink(state, state->order);
     passes_clear_layer(passes, &state->layer);
     gl.ClearNamedFramebufferuiv(state->layer_buffer, GL_COLOR, passes->targets.color_count, none);
     gl.DepthFunc(GL_ALWAYS);
     gl.Enable(GL_DEPTH_TEST);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_begin_count(passes);
     passes_fullscreen(passes, state->extract, state->layer_buffer);
-    gl.EndQuery(GL_SAMPLES_PASSED);
     gl.Disable(GL_DEPTH_TEST);
     passes_depth_test(passes->desc, passes->desc->depth_func);
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
-    *samples = count;
-    return context_check(passes->context, "list layer");
+    return passes_end_count(passes, "list layer", samples);
 }
 
 static Result trace_layer(const Lists *state, int peel)
 {
     const Passes *passes = state->passes;
     const Targets *targets = &passes->targets;
-    PixelFormat format = targets->accum_format;
     Result result =
         readback_trace_gbuffer(targets, state->layer.buffer, peel, passes->trace, passes->pixels);
     if (result != RESULT_OK)
@@ -344,44 +357,34 @@ static Result trace_layer(const Lists *state, int peel)
                    READBACK_TOP_DOWN, passes->pixels);
     result = trace_put_peel(passes->trace, peel, "id", FORMAT_R32UI, targets->width,
                             targets->height, passes->pixels);
-    if (result != RESULT_OK)
-        return result;
-    readback_color(targets, targets->plain_buffer, 0, format, READBACK_TOP_DOWN, passes->pixels);
-    return trace_put_peel(passes->trace, peel, "accum", format, targets->width, targets->height,
-                          passes->pixels);
+    return result == RESULT_OK ? passes_trace_peel_accum(passes, peel) : result;
 }
 
-static Result blend_layers(Lists *state, uint64_t *blended)
+/* One layer. *more: false when there was none. */
+static Result blend_layer(void *context, int peel, bool *more)
 {
-    const Passes *passes = state->passes;
-    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
-    *blended = 0;
-    for (int peel = 0; peel < most; peel++) {
-        uint64_t samples;
-        Result result = draw_layer(state, &samples);
-        if (result != RESULT_OK || samples == 0)
-            return result;
-        *blended += samples;
-        state->frame->peels = peel + 1;
-        passes_light_layer(passes, &state->layer);
-        if (passes->trace)
-            result = trace_layer(state, peel);
-        if (result != RESULT_OK)
-            return result;
-    }
-    return RESULT_OK;
+    Lists *state = context;
+    uint64_t samples = 0;
+    Result result = draw_layer(state, &samples);
+    *more = result == RESULT_OK && samples > 0;
+    if (!*more)
+        return result;
+    state->blended += samples;
+    state->frame->peels = peel + 1;
+    passes_light_layer(state->passes, &state->layer);
+    return state->passes->trace ? trace_layer(state, peel) : RESULT_OK;
 }
 
 /* ---- the frame ---- */
 
-static void report(const Lists *state, uint64_t blended)
+static void report(const Lists *state)
 {
     Frame *frame = state->frame;
     frame->nodes = state->header.asked;
     frame->node_bytes = state->words * (uint32_t)sizeof(uint32_t);
     frame->layers.max = state->header.deepest;
     frame->layers.fragments = state->header.visible;
-    frame->layers.lost_to_pass_limit = state->header.visible - blended;
+    frame->layers.lost_to_pass_limit = state->header.visible - state->blended;
     if (state->header.asked <= state->capacity)
         return;
     frame->layers.lost_to_overflow = state->header.asked - state->capacity;
@@ -392,16 +395,15 @@ static void report(const Lists *state, uint64_t blended)
 
 static Result run(Lists *state)
 {
-    uint64_t blended = 0;
     Result result = build_lists(state);
     if (result == RESULT_OK)
         result = sort_lists(state);
     if (result == RESULT_OK)
-        result = blend_layers(state, &blended);
+        result = passes_peels(state->passes, blend_layer, state);
     if (result == RESULT_OK)
         result = passes_finish(state->passes, state->frame->peels);
     if (result == RESULT_OK)
-        report(state, blended);
+        report(state);
     return result;
 }
 

@@ -8,7 +8,6 @@
 #include "base/progress.h"
 #include "frame/sort.h"
 #include "program.h"
-#include "readback.h"
 
 /* Uniforms are set where the draw changes: sorted triangles often come one by one. */
 static void draw_runs(const Passes *passes, GLuint program, const Sort *sort)
@@ -26,31 +25,19 @@ static void draw_runs(const Passes *passes, GLuint program, const Sort *sort)
 static Result paint(const Passes *passes, GLuint program, const Sort *sort, Frame *out)
 {
     const Targets *targets = &passes->targets;
-    GLuint64 samples = 0;
+    uint64_t samples;
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets->plain_buffer);
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(passes);
     gl.Enable(GL_BLEND);
-    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_blend_over();
+    passes_begin_count(passes);
     draw_runs(passes, program, sort);
-    gl.EndQuery(GL_SAMPLES_PASSED);
+    Result result = passes_end_count(passes, "painter", &samples);
     gl.Disable(GL_BLEND);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &samples);
     progress_add();
     out->peels = samples > 0;
     out->geometry_passes = 1;
-    return context_check(passes->context, "painter");
-}
-
-static Result trace_layers(const Passes *passes)
-{
-    const Targets *targets = &passes->targets;
-    if (!passes->trace)
-        return RESULT_OK;
-    readback_color(targets, targets->plain_buffer, 0, targets->accum_format, READBACK_TOP_DOWN,
-                   passes->pixels);
-    return trace_put(passes->trace, "painter.layers", 1, targets->accum_format, targets->width,
-                     targets->height, passes->pixels);
+    return result;
 }
 
 Result gl_painter(Passes *passes, Frame *out)
@@ -72,7 +59,7 @@ Result gl_painter(Passes *passes, Frame *out)
     if (result == RESULT_OK)
         result = paint(passes, program, &sort, out);
     if (result == RESULT_OK)
-        result = trace_layers(passes);
+        result = passes_trace_accum(passes, "painter.layers", 1);
     if (result == RESULT_OK)
         result = passes_finish(passes, out->peels);
     gl.DeleteProgram(program);

@@ -98,27 +98,22 @@ static Result draw_peel(Peel *state, int peel, uint64_t *samples)
             return result;
         gl.BindTextureUnit(0, state->previous_code ? state->previous_code : previous->depth);
     }
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(passes);
     return passes_draw_counted(passes, peel > 0 ? state->next : state->first, true, samples);
 }
 
 static Result trace_peel(const Peel *state, int peel)
 {
     const Passes *passes = state->passes;
-    const Targets *targets = &passes->targets;
-    PixelFormat format = targets->accum_format;
-    Result result = readback_trace_gbuffer(targets, state->layers[peel & 1].buffer, peel,
+    Result result = readback_trace_gbuffer(&passes->targets, state->layers[peel & 1].buffer, peel,
                                            passes->trace, passes->pixels);
-    if (result != RESULT_OK)
-        return result;
-    readback_color(targets, targets->plain_buffer, 0, format, READBACK_TOP_DOWN, passes->pixels);
-    return trace_put_peel(passes->trace, peel, "accum", format, targets->width, targets->height,
-                          passes->pixels);
+    return result == RESULT_OK ? passes_trace_peel_accum(passes, peel) : result;
 }
 
 /* One peel. *more: false when it brought nothing new and was left out. */
-static Result run_peel(Peel *state, int peel, bool *more)
+static Result run_peel(void *context, int peel, bool *more)
 {
+    Peel *state = context;
     const Passes *passes = state->passes;
     uint64_t samples = 0;
     *more = false;
@@ -140,23 +135,16 @@ static Result run_peel(Peel *state, int peel, bool *more)
     return passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-static Result run(Peel *state)
-{
-    Passes *passes = state->passes;
-    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
-    bool more = true;
-    Result result = passes_opaque(passes);
-    for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
-        result = run_peel(state, peel, &more);
-    return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;
-}
-
 Result gl_peel(Passes *passes, Frame *out)
 {
     Peel state = {.passes = passes, .frame = out};
     Result result = make(&state);
     if (result == RESULT_OK)
-        result = run(&state);
+        result = passes_opaque(passes);
+    if (result == RESULT_OK)
+        result = passes_peels(passes, run_peel, &state);
+    if (result == RESULT_OK)
+        result = passes_finish(passes, out->peels);
     destroy(&state);
     return result;
 }

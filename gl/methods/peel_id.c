@@ -112,12 +112,12 @@ static void draw(const PeelId *state, GLuint program, GLuint framebuffer)
 /* Texture units of shaders/peel_id.frag.glsl. */
 static Result bind_previous(const PeelId *state, int peel)
 {
-    const Targets *targets = &state->passes->targets;
     const int other = 1 - (peel & 1);
-    gl.BindTextureUnit(1, targets->opaque_code ? targets->opaque_code : targets->opaque.depth);
+    passes_bind_opaque_depth(state->passes);
     if (peel == 0)
         return RESULT_OK;
-    Result result = targets_copy_code(targets, state->layers[other].buffer, state->previous_code);
+    Result result = targets_copy_code(&state->passes->targets, state->layers[other].buffer,
+                                      state->previous_code);
     gl.BindTextureUnit(4, state->previous_code ? state->previous_code : state->layers[other].depth);
     gl.BindTextureUnit(5, state->rank[other]);
     return result;
@@ -128,18 +128,14 @@ static Result bind_previous(const PeelId *state, int peel)
 static Result draw_depth(PeelId *state, int peel, uint64_t *samples)
 {
     const Passes *passes = state->passes;
-    GLuint64 count = 0;
     Result result = bind_previous(state, peel);
     if (result != RESULT_OK)
         return result;
     passes_clear_layer(passes, &state->layers[peel & 1]);
     passes_depth_test(passes->desc, DEPTH_LEQUAL);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    passes_begin_count(passes);
     draw(state, state->depth[peel > 0], state->depth_buffer[peel & 1]);
-    gl.EndQuery(GL_SAMPLES_PASSED);
-    gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
-    *samples = count;
-    return context_check(passes->context, "depth pass");
+    return passes_end_count(passes, "depth pass", samples);
 }
 
 static void draw_selected(PeelId *state, int peel)
@@ -175,22 +171,17 @@ static Result trace_ids(const PeelId *state, int peel)
 static Result trace_peel(const PeelId *state, int peel)
 {
     const Passes *passes = state->passes;
-    const Targets *targets = &passes->targets;
-    PixelFormat format = targets->accum_format;
-    Result result = readback_trace_gbuffer(targets, state->layers[peel & 1].buffer, peel,
+    Result result = readback_trace_gbuffer(&passes->targets, state->layers[peel & 1].buffer, peel,
                                            passes->trace, passes->pixels);
     if (result == RESULT_OK)
         result = trace_ids(state, peel);
-    if (result != RESULT_OK)
-        return result;
-    readback_color(targets, targets->plain_buffer, 0, format, READBACK_TOP_DOWN, passes->pixels);
-    return trace_put_peel(passes->trace, peel, "accum", format, targets->width, targets->height,
-                          passes->pixels);
+    return result == RESULT_OK ? passes_trace_peel_accum(passes, peel) : result;
 }
 
 /* One peel. *more: false when nothing was left. */
-static Result run_peel(PeelId *state, int peel, bool *more)
+static Result run_peel(void *context, int peel, bool *more)
 {
+    PeelId *state = context;
     uint64_t samples = 0;
     Result result = draw_depth(state, peel, &samples);
     *more = result == RESULT_OK && samples > 0;
@@ -202,23 +193,16 @@ static Result run_peel(PeelId *state, int peel, bool *more)
     return state->passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-static Result run(PeelId *state)
-{
-    Passes *passes = state->passes;
-    int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
-    bool more = true;
-    Result result = passes_opaque(passes);
-    for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
-        result = run_peel(state, peel, &more);
-    return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;
-}
-
 Result gl_peel_id(Passes *passes, Frame *out)
 {
     PeelId state = {.passes = passes, .frame = out};
     Result result = make(&state);
     if (result == RESULT_OK)
-        result = run(&state);
+        result = passes_opaque(passes);
+    if (result == RESULT_OK)
+        result = passes_peels(passes, run_peel, &state);
+    if (result == RESULT_OK)
+        result = passes_finish(passes, out->peels);
     destroy(&state);
     return result;
 }

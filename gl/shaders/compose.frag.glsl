@@ -1,6 +1,6 @@
 // Full-screen pass of a forward method: a stored colour, premultiplied, to be blended.
 //
-// ACCUM_8   the accumulation buffer has 8 bits a channel
+// ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 
 layout(binding = 2) uniform sampler2D color_buffer;
 
@@ -11,8 +11,5 @@ void main()
     source = texelFetch(color_buffer, ivec2(gl_FragCoord.xy), 0);
     if (source.a <= ALPHA_TEST)
         discard;
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    source = clamp(source, 0.0, 1.0);
-#endif
+    source = ACCUM_CLAMP(source);
 }

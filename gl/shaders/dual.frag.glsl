@@ -3,7 +3,7 @@
 // and peel_test.glsl, the lighting pass behind shade.glsl and unproject.glsl.
 //
 // LIGHT_FRONT, LIGHT_BACK   lighting pass
-// ACCUM_8                   the accumulation buffer has 8 bits a channel
+// ACCUM_CLAMP(c)            clamps a colour where the accumulation has 8 bits a channel
 
 #if defined(LIGHT_FRONT) || defined(LIGHT_BACK)
 
@@ -29,11 +29,8 @@ void main()
     vec3 N = decode_octahedral(normal_opacity.xy);
     vec3 P = unproject(pixel, distance_depth(distance));
     vec4 diffuse_alpha = vec4(texelFetch(diffuse_buffer, pixel, 0).rgb, normal_opacity.z);
-    source = shade(N, P, diffuse_alpha, texelFetch(material_buffer, pixel, 0).xyz);
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    source = clamp(source, 0.0, 1.0);
-#endif
+    vec3 material = texelFetch(material_buffer, pixel, 0).xyz;
+    source = ACCUM_CLAMP(shade(N, P, diffuse_alpha, material));
 }
 
 #else

@@ -1,7 +1,8 @@
 // Forward dual depth peeling: one fragment of a peel, all targets blended with MAX. Behind
 // surface.glsl, peel_test.glsl, shade.glsl and minmax.glsl.
 //
-// ACCUM_UNORM    colours are stored in fixed point
+// ACCUM_UNORM      colours are stored in fixed point
+// ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 
 layout(binding = 4) uniform sampler2D previous_limits;
 layout(binding = 5) uniform sampler2D previous_front;
@@ -52,8 +53,5 @@ void main()
         else
             back = source;
     }
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    front = clamp(front, 0.0, 1.0);
-#endif
+    front = ACCUM_CLAMP(front);
 }

@@ -3,7 +3,7 @@
 //
 // OCTAHEDRAL       normals are stored in two channels
 // RECONSTRUCT      the position follows from the stored depth
-// ACCUM_8          the accumulation buffer has 8 bits a channel
+// ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 // EDGES            outlines: fragments that differ from a neighbour are black
 
 layout(binding = 0) uniform sampler2D normal_buffer;
@@ -72,8 +72,5 @@ void main()
     if (is_edge(pixel, N, -P.z))
         source.rgb = vec3(0.0);
 #endif
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    source = clamp(source, 0.0, 1.0);
-#endif
+    source = ACCUM_CLAMP(source);
 }

@@ -1,7 +1,7 @@
 // The painter's geometry pass: a shaded fragment, premultiplied, to be blended over what is there.
 // Behind surface.glsl, peel_test.glsl and shade.glsl.
 //
-// ACCUM_8   the accumulation buffer has 8 bits a channel
+// ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 
 layout(location = 0) out vec4 source;
 
@@ -12,9 +12,5 @@ void main()
     Surface surface = surface_at();
     if (surface.base.a <= ALPHA_TEST)
         discard;
-    source = shade(surface.normal, v_position, surface.base, surface.material);
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    source = clamp(source, 0.0, 1.0);
-#endif
+    source = ACCUM_CLAMP(shade(surface.normal, v_position, surface.base, surface.material));
 }

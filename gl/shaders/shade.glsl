@@ -4,6 +4,7 @@
 // PHONG            one directional light instead
 // LIGHT_COUNT      number of lights
 // LIGHTS_STORAGE   they do not fit a uniform block
+// LIGHT_RANGES     some of them reach only so far
 // GGX_STABLE       the distribution without cancellation
 // BACK_LIGHT       lights behind the surface add their specular lobe
 
@@ -13,7 +14,7 @@ layout(location = 16) uniform vec3 ambient;
 struct Light {
     vec4 position; // view space
     vec4 color;
-    vec4 attenuation; // constant, linear, quadratic
+    vec4 attenuation; // constant, linear, quadratic; 1/range²
 };
 #ifdef LIGHTS_STORAGE
 layout(std430, binding = 0) readonly buffer Lights
@@ -100,6 +101,10 @@ vec4 shade(vec3 N, vec3 P, vec4 diffuse_alpha, vec3 material)
         precise vec3 F = F0 + Fm * x5;
         precise float s = dist * (GV * GL) / (NV4 * NL + SPECULAR_BIAS);
         precise float att = 1.0 / (attenuation.x + attenuation.y * d + attenuation.z * d2);
+#ifdef LIGHT_RANGES
+        precise float q = min(d2 * lights[i].attenuation.w, 1.0);
+        att = att * (1.0 - q * q);
+#endif
         precise vec3 radiance = lights[i].color.rgb * att * NL;
         sum = sum + ((1.0 - F) * direct + F * s) * radiance;
     }

@@ -1,8 +1,8 @@
 // Weighted average, its geometry pass (behind surface.glsl, peel_test.glsl and shade.glsl) and its
 // full-screen pass. The formula and its order: ref/pipeline/methods/weighted_average.c.
 //
-// COMBINE   the full-screen pass: sums to the source colour
-// ACCUM_8   the accumulation buffer has 8 bits a channel
+// COMBINE          the full-screen pass: sums to the source colour
+// ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 
 #ifndef COMBINE
 
@@ -42,11 +42,7 @@ void main()
     precise float alpha = 1.0 - transmittance;
     precise vec3 color = sum.rgb / sum.a;
     precise vec3 premultiplied = color * alpha;
-    source = vec4(premultiplied, alpha);
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    source = clamp(source, 0.0, 1.0);
-#endif
+    source = ACCUM_CLAMP(vec4(premultiplied, alpha));
 }
 
 #endif

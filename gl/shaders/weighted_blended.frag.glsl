@@ -1,10 +1,10 @@
 // Weighted blended, its geometry pass (behind surface.glsl, peel_test.glsl and shade.glsl) and its
 // full-screen pass. The formula and its order: ref/pipeline/methods/weighted_blended.c.
 //
-// COMBINE    the full-screen pass: sums to the source colour
-// WEIGHT     the paper's equation: 7, 8, 9 or 10
-// REVERSED   depth is 1 near and 0 far
-// ACCUM_8    the accumulation buffer has 8 bits a channel
+// COMBINE          the full-screen pass: sums to the source colour
+// WEIGHT           the paper's equation: 7, 8, 9 or 10
+// REVERSED         depth is 1 near and 0 far
+// ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 
 #ifndef COMBINE
 
@@ -75,11 +75,7 @@ void main()
     precise float total = max(sum.a, 1e-5);
     precise vec3 color = sum.rgb / total;
     precise vec3 premultiplied = color * alpha;
-    source = vec4(premultiplied, alpha);
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    source = clamp(source, 0.0, 1.0);
-#endif
+    source = ACCUM_CLAMP(vec4(premultiplied, alpha));
 }
 
 #endif

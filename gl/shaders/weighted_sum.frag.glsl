@@ -1,8 +1,8 @@
 // Weighted sum, its geometry pass (behind surface.glsl, peel_test.glsl and shade.glsl) and its
 // full-screen pass: ref/pipeline/methods/weighted_sum.c.
 //
-// COMBINE   the full-screen pass: the sum is the source colour
-// ACCUM_8   the accumulation buffer has 8 bits a channel
+// COMBINE          the full-screen pass: the sum is the source colour
+// ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 
 #ifndef COMBINE
 
@@ -29,10 +29,7 @@ void main()
     source = texelFetch(sum_buffer, ivec2(gl_FragCoord.xy), 0);
     if (source.a == 0.0)
         discard;
-#ifdef ACCUM_8
-    // What the store does anyway; without AVX, llvmpipe turns 2^31/255 and more into 0.
-    source = clamp(source, 0.0, 1.0);
-#endif
+    source = ACCUM_CLAMP(source);
 }
 
 #endif

@@ -130,11 +130,10 @@ static inline bool pass_may_leave(const Pass *pass, int peels, int limit)
     return peels > 0 && (peels == limit || pass->desc->peel_test == PEEL_TEST_RAW);
 }
 
-/* Of a method that draws the transparent list peel by peel, until one yields nothing or the limit.
- */
+/* Of a method that draws the transparent list peel by peel, until the limit or an empty one. */
 static inline int pass_geometry_passes(const Pass *pass, int peels)
 {
-    int limit = pass->desc->passes ? pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(pass->desc);
     return peels + (peels < limit);
 }
 

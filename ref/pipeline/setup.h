@@ -112,15 +112,6 @@ static inline float setup_depth_at(bool fused, const Setup *setup, int x, int y)
     return op_add(plane_at(fused, &setup->depth, x, y), 0.0f);
 }
 
-/* Whether the centre of pixel (x, y) is covered. */
-static inline bool setup_covers(const Setup *setup, int x, int y)
-{
-    for (int i = 0; i < 3; i++)
-        if (setup->edge[i].c + 256 * (setup->edge[i].b * y - setup->edge[i].a * x) <= 0)
-            return false;
-    return x >= setup->box.x0 && x <= setup->box.x1 && y >= setup->box.y0 && y <= setup->box.y1;
-}
-
 typedef void (*SetupVisit)(void *context, const Setup *setup, int x, int y);
 
 /* Calls visit for every covered pixel inside rect, row by row. Inlined into its caller, and visit

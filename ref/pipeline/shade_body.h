@@ -89,7 +89,8 @@ enum {
 
 /* One light, between stages. */
 typedef struct Incidence {
-    Lanes distance, falloff;           /* 1: falloff is 1/attenuation */
+    Lanes distance, falloff;           /* 1: falloff is 1/attenuation, but for the window */
+    Lanes window;                      /* 1: where the light has a range */
     Lanes u, n_dot_l;                  /* 2: dot(N, L), and NL */
     Lanes half_sum[3], half_length;    /* 2: V + L, and its guarded length */
     Lanes denominator, fresnel_weight; /* 3: of the distribution; (1 - H.V)^5 */
@@ -101,12 +102,27 @@ static inline void shade_to_light(const Surface *surface, const ViewLight *light
         out[i] = lanes_sub(lanes_all(light->position[i]), surface->position[i]);
 }
 
+/* What a light's range leaves of it: exactly 0 beyond. */
+static inline Lanes shade_window(const ViewLight *light, Lanes distance2)
+{
+    Lanes one = lanes_all(1.0f);
+    Lanes q = lanes_min(lanes_mul(distance2, lanes_all(light->inverse_range2)), one);
+    return lanes_sub(one, lanes_mul(q, q));
+}
+
+static inline Lanes shade_distance2(const Lanes to_light[3])
+{
+    return lanes_max(lanes_dot3(to_light, to_light), lanes_all(SHADING_DISTANCE2_MIN));
+}
+
 /* Stage 1. */
 static inline void shade_distance(const Surface *surface, const ViewLight *light, Incidence *out)
 {
     Lanes to_light[3];
     shade_to_light(surface, light, to_light);
-    Lanes distance2 = lanes_max(lanes_dot3(to_light, to_light), lanes_all(SHADING_DISTANCE2_MIN));
+    Lanes distance2 = shade_distance2(to_light);
+    if (light->inverse_range2 > 0.0f)
+        out->window = shade_window(light, distance2);
     out->distance = lanes_sqrt(distance2);
     out->falloff = lanes_add(lanes_add(lanes_all(light->attenuation[0]),
                                        lanes_mul(lanes_all(light->attenuation[1]), out->distance)),
@@ -173,6 +189,8 @@ static inline void shade_add(bool back_light, const Surface *surface, const View
         lanes_mul(distribution, lanes_mul(surface->geometry_view, geometry_light)),
         lanes_add(lanes_mul(surface->four_n_dot_v, n_dot_l), lanes_all(SHADING_SPECULAR_BIAS)));
     Lanes attenuation = lanes_div(one, in->falloff);
+    if (light->inverse_range2 > 0.0f)
+        attenuation = lanes_mul(attenuation, in->window);
     for (int i = 0; i < 3; i++) {
         Lanes lambert = surface->lambert[i];
         if (back_light)
@@ -218,8 +236,8 @@ static inline Lanes shade_size(const Lanes v[3])
     return sum;
 }
 
-/* Whether a light with NL = 0 in every lane adds +0 to every sum, so that it can be left out: there
- * is nothing to mirror, and no term can be negative or other than finite.
+/* Whether a light with NL = 0, or out of its range, in every lane adds +0 to every sum, so that it
+ * can be left out: there is nothing to mirror, and no term can be negative or other than finite.
  *
  * With colours and metallic in [0, 1], rounding keeps F0, 1 − F0, F, 1 − F and the Lambert term in
  * [0, 1]. |N|² ≤ 1 + 2^-20 and |H|² ≤ 1 + 2^-21 keep the source's denominator above
@@ -227,7 +245,7 @@ static inline Lanes shade_size(const Lanes v[3])
  * attenuation times colour is below 2e20 (view->light_reach), as no distance² reaches 2^101. So
  * reflected and color·att are finite and not negative, their product with NL = +0 is a zero, and
  * a sum, which began as +0 and to which nothing negative was added, is never −0: adding either zero
- * leaves it as it is. */
+ * leaves it as it is. A window of 0 makes color·att such a zero. */
 static inline bool shade_may_skip(const View *view, const ShadeForm *form, const ShadeBatch *batch,
                                   const Surface *surface)
 {
@@ -255,14 +273,20 @@ static inline Lanes shade_threshold(const View *view, const Surface *surface)
     return lanes_sub(lanes_dot3(surface->normal, surface->position), margin);
 }
 
-/* Whether the light is not behind the surface in some lane. */
+/* Whether the light is neither behind the surface nor out of its range in some lane. */
 static inline bool shade_reaches(const Surface *surface, const ViewLight *light, Lanes threshold)
 {
     Lanes position[3];
     for (int i = 0; i < 3; i++)
         position[i] = lanes_all(light->position[i]);
-    LanesMask behind = lanes_less(lanes_dot3(surface->normal, position), threshold);
-    return lanes_mask_bits(behind) != LANES_FULL;
+    uint32_t dark = lanes_mask_bits(lanes_less(lanes_dot3(surface->normal, position), threshold));
+    if (light->inverse_range2 > 0.0f && dark != LANES_FULL) {
+        Lanes to_light[3];
+        shade_to_light(surface, light, to_light);
+        LanesMask lit = lanes_less(lanes_all(0.0f), shade_window(light, shade_distance2(to_light)));
+        dark |= ~lanes_mask_bits(lit) & LANES_FULL;
+    }
+    return dark != LANES_FULL;
 }
 
 /* The next SHADE_LIST lights from `first` that may add something, to `out`. Returns how many. */

@@ -257,7 +257,11 @@ TILE_INLINE void visit_transparent(void *context, const TileTriangle *triangle, 
         LanesInt more = lanes_int_add(count, lanes_int_all(1));
         lanes_int_store(fragments, lanes_int_select(lanes, more, count));
     }
-    insert(tile, block, lanes, key, lanes_int_all(index));
+    /* What the raw test finds in front of the opaque depth may still be stored at the far end. */
+    if (tile->one_by_one)
+        lanes = lanes_mask_and(lanes, nearer(tile, key, lanes_int_all(tile->far)));
+    if (lanes_mask_bits(lanes))
+        insert(tile, block, lanes, key, lanes_int_all(index));
 }
 
 TILE_INLINE void visit_remaining(void *context, const TileTriangle *triangle, int32_t index,
@@ -595,12 +599,12 @@ static Result run(TileJob *job)
 {
     const Pass *pass = job->pass;
     Result result = RESULT_OK;
-    job->limit = pass->desc->passes ? pass->desc->passes : PASSES_MAX;
+    job->limit = render_desc_pass_limit(pass->desc);
     if (pass->desc->peel_test == PEEL_TEST_RAW && pass->desc->passes == 0) {
         job->dry = true;
         result = pool_run(pass->pool, pass->tile_count, tile_task, job);
         job->dry = false;
-        job->limit = most_peels(job);
+        job->limit = most_peels(job) > 0 ? most_peels(job) : 1; /* fragments are counted anyway */
     }
     if (result == RESULT_OK)
         result = pool_run(pass->pool, pass->tile_count, tile_task, job);

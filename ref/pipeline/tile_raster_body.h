@@ -11,6 +11,9 @@
 #include "number/op.h"
 #include "ref/pipeline/pass.h"
 
+#include <assert.h>
+#include <stdlib.h>
+
 enum {
 #if LANES == 1
     BLOCK_WIDTH = 1,
@@ -20,9 +23,9 @@ enum {
     BLOCK_WIDTH = 4,
 #endif
     BLOCK_HEIGHT = LANES / BLOCK_WIDTH,
-    /* Beyond it, in 1/256 pixel, the steps of 256 pixels do not fit in 32 bits; only vertices that
-     * no clipping could bring into the viewport are so far away. */
-    EDGE_STEP_MAX = 1 << 22
+    /* Of an edge, in 1/256 pixel: what the clipper leaves lies within the viewport. The steps of
+     * TILE_MAX pixels fit in 32 bits. */
+    EDGE_STEP_MAX = SIZE_MAX_PIXELS * 256
 };
 
 #define TILE_INLINE static inline __attribute__((always_inline))
@@ -34,7 +37,6 @@ typedef struct TileTriangle {
     int32_t edge[3]; /* at (0, 0); inside: edge + step_x·x + step_y·y ≥ 0 for all three */
     int32_t step_x[3], step_y[3];
     int16_t column0, row0, column1, row1; /* blocks, both ends included */
-    bool wide;                            /* edges do not hold: ask the setup */
     bool masked;
 } TileTriangle;
 
@@ -99,6 +101,7 @@ static inline bool grid_inside(const TileGrid *grid, int x, int y)
 /* Reduces an edge to the tile. Returns false where no pixel of it is inside. */
 static inline bool reduce_edge(const TileGrid *grid, const Edge *edge, int i, TileTriangle *out)
 {
+    assert(llabs(edge->a) <= EDGE_STEP_MAX && llabs(edge->b) <= EDGE_STEP_MAX);
     int64_t at_first =
         ((edge->c + 255) >> 8) - 1 + edge->b * grid->rect.y0 - edge->a * grid->rect.x0;
     int64_t reach = grid->size - 1, most = at_first, least = at_first;
@@ -109,11 +112,6 @@ static inline bool reduce_edge(const TileGrid *grid, const Edge *edge, int i, Ti
     out->step_x[i] = crosses ? (int32_t)-edge->a : 0;
     out->step_y[i] = crosses ? (int32_t)edge->b : 0;
     return most >= 0;
-}
-
-static inline bool step_too_wide(int64_t step)
-{
-    return step > EDGE_STEP_MAX || step < -EDGE_STEP_MAX;
 }
 
 /* From out->setup. Returns false where the triangle covers no pixel of the tile. */
@@ -129,28 +127,10 @@ static inline bool reduce_triangle(const TileGrid *grid, TileTriangle *out)
     out->column1 = (int16_t)((x1 - rect->x0) / BLOCK_WIDTH);
     out->row0 = (int16_t)((y0 - rect->y0) / BLOCK_HEIGHT);
     out->row1 = (int16_t)((y1 - rect->y0) / BLOCK_HEIGHT);
-    out->wide = false;
-    for (int i = 0; i < 3; i++)
-        out->wide |= step_too_wide(setup->edge[i].a) || step_too_wide(setup->edge[i].b);
-    if (out->wide)
-        return true;
     for (int i = 0; i < 3; i++)
         if (!reduce_edge(grid, &setup->edge[i], i, out))
             return false;
     return true;
-}
-
-/* Covered lanes of a block by the definition, edge by edge in 64 bits. */
-static __attribute__((noinline)) uint32_t wide_coverage(const TileGrid *grid, const Setup *setup,
-                                                        int block)
-{
-    uint32_t bits = 0;
-    for (int lane = 0; lane < LANES; lane++) {
-        int x = grid_pixel_x(grid, block * LANES + lane);
-        int y = grid_pixel_y(grid, block * LANES + lane);
-        bits |= (uint32_t)setup_covers(setup, x, y) << lane;
-    }
-    return bits;
 }
 
 /* Window coordinates of a block's pixels, from those of its first. */
@@ -228,8 +208,6 @@ TILE_INLINE void raster_triangle(const TileGrid *grid, const TileTriangle *trian
             LanesInt sign = lanes_int_or(lanes_int_or(at[0], at[1]), at[2]);
             LanesMask covered = lanes_int_less(lanes_int_all(-1), sign);
             int block = by * grid->columns + bx;
-            if (__builtin_expect(triangle->wide, 0))
-                covered = lanes_mask_from_bits(wide_coverage(grid, &triangle->setup, block));
             if (lanes_mask_bits(covered)) {
                 Lanes x = block_x(grid->rect.x0 + bx * BLOCK_WIDTH);
                 Lanes z = block_plane(grid, &triangle->setup.depth, x, y);

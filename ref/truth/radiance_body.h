@@ -98,6 +98,9 @@ static inline void real_light(const RealPoint *point, const ViewLight *light, Gg
     for (int i = 0; i < 3; i++)
         D[i] = real_sub(real_of(light->position[i]), point->P[i]);
     Real d2 = real_max(real_dot(D, D), real_of((double)SHADING_DISTANCE2_MIN));
+    Real q = real_min(real_mul(d2, real_of(light->inverse_range2)), one);
+    if (!real_may_exceed(real_neg(q), -1.0))
+        return; /* out of range: the whole term is multiplied by 0 */
     Real d = real_sqrt(d2), inverse = real_div(one, d);
     for (int i = 0; i < 3; i++)
         L[i] = real_mul(D[i], inverse);
@@ -106,7 +109,7 @@ static inline void real_light(const RealPoint *point, const ViewLight *light, Gg
     if (back_light)
         NL = real_mirror(point, u, L, lambert);
     if (!real_may_exceed(NL, 0.0))
-        return; /* the whole term is multiplied by it */
+        return; /* likewise */
     for (int i = 0; i < 3; i++)
         h[i] = real_add(point->V[i], L[i]);
     real_normalize(h, H);
@@ -122,6 +125,8 @@ static inline void real_light(const RealPoint *point, const ViewLight *light, Gg
     Real attenuation =
         real_div(one, real_add(real_add(real_of(att[0]), real_mul(real_of(att[1]), d)),
                                real_mul(real_of(att[2]), d2)));
+    if (light->inverse_range2 > 0.0f)
+        attenuation = real_mul(attenuation, real_sub(one, real_mul(q, q)));
     for (int i = 0; i < 3; i++) {
         Real F = real_add(point->F0[i], real_mul(point->Fm[i], x5));
         Real reflected = real_add(real_mul(real_sub(one, F), lambert[i]), real_mul(F, s));

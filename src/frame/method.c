@@ -5,52 +5,82 @@
 /* Dual depth peeling has positions from 32-bit depths, and the lists' nodes 8-bit colours and
  * alpha: hence the tolerances. */
 static const MethodInfo methods[METHOD_COUNT] = {
-    [METHOD_PEEL] = {METHOD_PEEL, "peel",
-                     "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
-                     "deferred depth peeling, front to back", true, true, 1e-4},
-    [METHOD_PEEL_ID] = {METHOD_PEEL_ID, "peel-id",
-                        "Everitt, \"Interactive Order-Independent Transparency\", 2001; the order "
-                        "by primitive is ours",
-                        "deferred depth peeling by depth and primitive: keeps coplanar layers",
-                        true, true, 1e-4},
-    [METHOD_DUAL] = {METHOD_DUAL, "dual",
-                     "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"; "
-                     "Bavoil, Myers, \"Order Independent Transparency with Dual Depth Peeling\", "
-                     "2008",
-                     "deferred dual depth peeling, from both sides", true, true, 2e-3},
-    [METHOD_FORWARD] = {METHOD_FORWARD, "forward",
-                        "Everitt, \"Interactive Order-Independent Transparency\", 2001; Bavoil and "
-                        "Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
-                        "front-to-back peeling, shaded in the geometry pass", true, true, 1e-4},
-    [METHOD_FORWARD_DUAL] = {METHOD_FORWARD_DUAL, "forward-dual",
-                             "Bavoil, Myers, \"Order Independent Transparency with Dual Depth "
-                             "Peeling\", 2008",
-                             "dual depth peeling, shaded in the geometry pass", true, true, 1e-4},
-    [METHOD_LINKED_LIST] =
-        {METHOD_LINKED_LIST, "linked-list",
-         "Breust, \"Deep Deferred Renderer\"; Yang et al., \"Real-Time Concurrent "
-         "Linked List Construction on the GPU\", 2010",
-         "deep deferred: one geometry pass into per-pixel lists of G-buffer "
-         "nodes, sorted by depth and primitive",
-         true, true, 2e-2},
+    [METHOD_PEEL] = {.id = METHOD_PEEL,
+                     .name = "peel",
+                     .paper =
+                         "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"",
+                     .summary = "deferred depth peeling, front to back",
+                     .exact = true,
+                     .loses_ties = true,
+                     .layers = true,
+                     .tolerance = 1e-4},
+    [METHOD_PEEL_ID] = {.id = METHOD_PEEL_ID,
+                        .name = "peel-id",
+                        .paper = "Everitt, \"Interactive Order-Independent Transparency\", 2001; "
+                                 "the order by primitive is ours",
+                        .summary =
+                            "deferred depth peeling by depth and primitive: keeps coplanar layers",
+                        .exact = true,
+                        .layers = true,
+                        .tolerance = 1e-4},
+    [METHOD_DUAL] =
+        {.id = METHOD_DUAL,
+         .name = "dual",
+         .paper = "Rapetta, \"OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling\"; Bavoil, "
+                  "Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
+         .summary = "deferred dual depth peeling, from both sides",
+         .exact = true,
+         .loses_ties = true,
+         .layers = true,
+         .tolerance = 2e-3},
+    [METHOD_FORWARD] =
+        {.id = METHOD_FORWARD,
+         .name = "forward",
+         .paper = "Everitt, \"Interactive Order-Independent Transparency\", 2001; Bavoil and "
+                  "Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
+         .summary = "front-to-back peeling, shaded in the geometry pass",
+         .exact = true,
+         .loses_ties = true,
+         .layers = true,
+         .tolerance = 1e-4},
+    [METHOD_FORWARD_DUAL] =
+        {.id = METHOD_FORWARD_DUAL,
+         .name = "forward-dual",
+         .paper = "Bavoil, Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
+         .summary = "dual depth peeling, shaded in the geometry pass",
+         .exact = true,
+         .loses_ties = true,
+         .layers = true,
+         .tolerance = 1e-4},
+    [METHOD_LINKED_LIST] = {.id = METHOD_LINKED_LIST,
+                            .name = "linked-list",
+                            .paper = "Breust, \"Deep Deferred Renderer\"; Yang et al., \"Real-Time "
+                                     "Concurrent Linked List Construction on the GPU\", 2010",
+                            .summary = "deep deferred: one geometry pass into per-pixel lists of "
+                                       "G-buffer nodes, sorted by depth and primitive",
+                            .exact = true,
+                            .layers = true,
+                            .tolerance = 2e-2},
     [METHOD_WEIGHTED_AVERAGE] =
-        {METHOD_WEIGHTED_AVERAGE, "weighted-average",
-         "Bavoil, Myers, \"Order Independent Transparency with Dual Depth "
-         "Peeling\", 2008",
-         "every fragment has the pixel's average colour and alpha; one pass", false, false, 0},
-    [METHOD_WEIGHTED_SUM] = {METHOD_WEIGHTED_SUM, "weighted-sum",
-                             "Meshkin, \"Sort-Independent Alpha Blending\", 2007",
-                             "the terms of blending that do not depend on order; one pass", false,
-                             false, 0},
-    [METHOD_WEIGHTED_BLENDED] = {METHOD_WEIGHTED_BLENDED, "weighted-blended",
-                                 "McGuire, Bavoil, \"Weighted Blended Order-Independent "
-                                 "Transparency\", 2013",
-                                 "an average weighted by depth and alpha; one pass", false, false,
-                                 0},
+        {.id = METHOD_WEIGHTED_AVERAGE,
+         .name = "weighted-average",
+         .paper = "Bavoil, Myers, \"Order Independent Transparency with Dual Depth Peeling\", 2008",
+         .summary = "every fragment has the pixel's average colour and alpha; one pass"},
+    [METHOD_WEIGHTED_SUM] = {.id = METHOD_WEIGHTED_SUM,
+                             .name = "weighted-sum",
+                             .paper = "Meshkin, \"Sort-Independent Alpha Blending\", 2007",
+                             .summary =
+                                 "the terms of blending that do not depend on order; one pass"},
+    [METHOD_WEIGHTED_BLENDED] =
+        {.id = METHOD_WEIGHTED_BLENDED,
+         .name = "weighted-blended",
+         .paper = "McGuire, Bavoil, \"Weighted Blended Order-Independent Transparency\", 2013",
+         .summary = "an average weighted by depth and alpha; one pass"},
     [METHOD_PAINTER] =
-        {METHOD_PAINTER, "painter",
-         "Newell, Newell, Sancha, \"A Solution to the Hidden Surface Problem\", 1972",
-         "objects or triangles sorted by centroid and blended over; one pass", false, false, 0},
+        {.id = METHOD_PAINTER,
+         .name = "painter",
+         .paper = "Newell, Newell, Sancha, \"A Solution to the Hidden Surface Problem\", 1972",
+         .summary = "objects or triangles sorted by centroid and blended over; one pass"},
 };
 
 bool method_has_bound(const RenderDesc *desc)

@@ -10,6 +10,7 @@ typedef struct MethodInfo {
     const char *paper;
     const char *summary;
     bool exact;       /* converges to the sorted result with enough passes, ties apart */
+    bool loses_ties;  /* keeps one of several fragments at equal depth: goes by depth alone */
     bool layers;      /* ref traces peel.K.primitive: its layers, front to back */
     double tolerance; /* at most this from truth at the 99th percentile, relative to max(1, value),
                        * in its best formats; 0 where it is not exact */

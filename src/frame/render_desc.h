@@ -177,6 +177,12 @@ static inline PixelFormat render_desc_depth(const RenderDesc *desc)
     return desc->depth == FORMAT_RGBA32F ? FORMAT_D32F : desc->depth;
 }
 
+/* The most peels that a frame may have. */
+static inline int render_desc_pass_limit(const RenderDesc *desc)
+{
+    return desc->passes ? desc->passes : PASSES_MAX;
+}
+
 /* Stored formats of the G-buffer's colour buffers; position is FORMAT_NONE where it is
  * reconstructed, normal FORMAT_RG16 where it is octahedral. With METHOD_FORWARD diffuse is the lit,
  * premultiplied colour, in 32-bit floats where the G-buffer is full and else in the accumulation's

@@ -60,9 +60,18 @@
  *     x   = clamp(1 − HV, 0, 1);  x2 = x·x;  x5 = x2·x2·x;  F = F0 + Fm·x5
  *     s   = dist·(GV·GL) / (NV4·NL + SHADING_SPECULAR_BIAS)
  *     att = 1 / (att.constant + att.linear·d + att.quadratic·d2)
+ *     q   = min(d2·light.inverse_range2, 1);  att = att·(1 − q·q)
  *     sum = sum + ((1 − F)·lambert + F·s) · (color·att·NL)
  *   c   = sum + ambient·diffuse·ao
  *   source = (c·alpha, alpha)
+ *
+ * The factor 1 − q·q is the window of glTF's KHR_lights_punctual, max(min(1 − (d/range)⁴, 1), 0):
+ * exactly 0 where q = 1, from the range on, and exactly 1 of a light without end, whose
+ * inverse_range2 is 0, so that it may be left out.
+ *
+ * A light with NL = 0 or q = 1 adds exactly 0 and may be skipped: what 0 is multiplied with is
+ * finite. Rounding makes NH² exceed 1 by less than 2e-6, and a2 is at least 4e-6, so that the
+ * source's den, 1 − (1 − a2)·NH², stays above 0.
  *
  * With GGX_STABLE the distribution's denominator does not subtract (N·H)² from 1, which leaves few
  * right digits near a highlight:

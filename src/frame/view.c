@@ -2,13 +2,19 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "frame/shading.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Of planes closer than this the rounding of w comes near the least normal number. */
 #define NEAR_MIN 0x1p-124f
+
+/* From it on nothing reaches the least distance that the shading knows; no product with a squared
+ * distance overflows. */
+#define INVERSE_RANGE2_MAX (2.0 / (double)SHADING_DISTANCE2_MIN)
 
 /* The original leaves out entities that cannot be seen at all. A texture only lowers alpha; without
  * one a masked material is all there or not there at all. */
@@ -65,6 +71,16 @@ static Draw make_draw(const Scene *scene, uint32_t index, const Matrix *view, Cu
     return draw;
 }
 
+static float inverse_range2(float range)
+{
+    if (range == 0.0f)
+        return 0.0f;
+    double inverse = 1.0 / ((double)range * (double)range);
+    if (inverse < (double)FLT_MIN) /* a denormal, which the renderers take for 0 */
+        return 0.0f;
+    return (float)fmin(inverse, INVERSE_RANGE2_MAX);
+}
+
 static ViewLight make_light(const Light *light, const Matrix *world_to_view)
 {
     ViewLight out;
@@ -75,6 +91,7 @@ static ViewLight make_light(const Light *light, const Matrix *world_to_view)
         out.color[i] = light->color[i];
         out.attenuation[i] = light->attenuation[i];
     }
+    out.inverse_range2 = inverse_range2(light->range);
     return out;
 }
 

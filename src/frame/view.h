@@ -25,6 +25,7 @@ typedef struct ViewLight {
     float position[3]; /* view space */
     float color[3];
     float attenuation[3];
+    float inverse_range2; /* 1/range², at most 2e4; 0: without end */
 } ViewLight;
 
 /* Position from depth: see frame/shading.h. */

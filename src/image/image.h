@@ -17,6 +17,13 @@ typedef struct Image {
 Result image_create(int width, int height, PixelFormat format, Image *out);
 void image_free(Image *image); /* leaves an empty image; NULL pixels are fine */
 
+static inline void image_swap(Image *a, Image *b)
+{
+    Image image = *a;
+    *a = *b;
+    *b = image;
+}
+
 static inline void *image_pixel(const Image *image, int x, int y)
 {
     return (char *)image->pixels +

@@ -2,6 +2,18 @@
 
 #include "base/file.h"
 
+#include <math.h>
+
+json_t *document_real(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *document_count(uint64_t value)
+{
+    return json_integer((json_int_t)value);
+}
+
 void document_put(Document *json, json_t *object, const char *key, json_t *value)
 {
     if (json_object_set_new(object, key, value))

@@ -6,10 +6,15 @@
 
 #include <jansson.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 typedef struct Document {
     bool failed; /* a jansson call failed: memory is exhausted */
 } Document;
+
+/* A number, null where it is not finite; and a count. NULL when memory is exhausted. */
+json_t *document_real(double value);
+json_t *document_count(uint64_t value);
 
 /* Both take over value; NULL counts as a failure. */
 void document_put(Document *json, json_t *object, const char *key, json_t *value);

@@ -4,7 +4,6 @@
 #include "report/document.h"
 #include "report/driver.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 static json_t *number(Document *json, float x)
@@ -12,7 +11,7 @@ static json_t *number(Document *json, float x)
     char hex[32];
     json_t *object = json_object();
     snprintf(hex, sizeof hex, "%a", (double)x);
-    document_put(json, object, "value", isfinite(x) ? json_real((double)x) : json_null());
+    document_put(json, object, "value", document_real((double)x));
     document_put(json, object, "hex", json_string(hex));
     return object;
 }
@@ -56,8 +55,8 @@ static json_t *rule(Document *json, const DriverRule *one)
     document_put(json, object, "section", json_string(one->section));
     document_put(json, object, "relied_on", json_boolean(one->relied_on));
     document_put(json, object, "verdict", json_string(driver_verdict_name(one->verdict)));
-    document_put(json, object, "samples", json_integer((json_int_t)one->samples));
-    document_put(json, object, "differing", json_integer((json_int_t)one->differing));
+    document_put(json, object, "samples", document_count(one->samples));
+    document_put(json, object, "differing", document_count(one->differing));
     document_put(json, object, "max_ulp", json_integer(one->max_distance));
     document_put(json, object, "example",
                  one->has_example ? example(json, &one->example) : json_null());

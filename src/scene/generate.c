@@ -262,6 +262,67 @@ static Result generate_alpha_ladder(Scene *out)
     return builder_finish(&builder, out);
 }
 
+/* ---- lamps ---------------------------------------------------------------------------------- */
+
+enum {
+    LAMPS_SIDE = 8, /* cells; a lamp in each */
+    LAMPS_SEED = 64
+};
+
+/* Pools of light that overlap with their neighbours at most, as glTF means it: 1/d² and a range.
+ * Whatever the number of lights asked for, they are all over the floor. */
+static void lamps_lights(Builder *builder)
+{
+    Random random = random_seed(LAMPS_SEED);
+    for (int i = 0; i < LAMPS_SIDE * LAMPS_SIDE; i++) {
+        int cell = (i * 27 + 36) % (LAMPS_SIDE * LAMPS_SIDE);
+        Light light = {.attenuation = {0.0f, 0.0f, 1.0f}};
+        light.position[0] =
+            pieces_float(2.0 * (cell % LAMPS_SIDE) - 7.0 + random_range(&random, -0.5, 0.5));
+        light.position[1] = pieces_float(random_range(&random, 0.5, 1.25));
+        light.position[2] =
+            pieces_float(2.0 * (cell / LAMPS_SIDE) - 7.0 + random_range(&random, -0.5, 0.5));
+        for (int k = 0; k < 3; k++)
+            light.color[k] = k == i % 3 ? 4.0f : (float)(3.0 * random_unit(&random));
+        light.range = (float)random_range(&random, 1.25, 2.5);
+        builder_light(builder, &light);
+    }
+}
+
+/* Frosted panes through each other, upright on a floor, between lamps that do not reach far: the
+ * edges of their light cross every surface. */
+static Result generate_lamps(Scene *out)
+{
+    static const float tints[2][4] = {{0.75f, 0.85f, 0.95f, 0.375f}, {0.95f, 0.85f, 0.7f, 0.5f}};
+    Builder builder = builder_begin("lamps");
+    Mesh mesh;
+    Result made = shapes_plane(16.0, 16.0, 1, 1, &mesh);
+    uint32_t floor = builder_mesh(&builder, made, &mesh);
+    made = shapes_plane(16.0, 2.0, 1, 1, &mesh);
+    uint32_t pane = builder_mesh(&builder, made, &mesh);
+    uint32_t stone =
+        pieces_surface(&builder, "floor", (const float[4]){0.7f, 0.68f, 0.65f, 1.0f}, 0.8f, 0.0f);
+    Matrix lying = pieces_lying(0.0, 0.0, 0.0);
+    pieces_place(&builder, "floor", floor, stone, &lying);
+    for (int i = 0; i < 2; i++) {
+        uint32_t glass = pieces_surface(&builder, i ? "amber" : "blue", tints[i], 0.6f, 0.0f);
+        Matrix turn = matrix_rotate_y((0.01 + 0.5 * i) * PIECES_PI);
+        for (int k = 0; k < 4; k++) {
+            char name[32];
+            snprintf(name, sizeof name, "%s %d", i ? "amber" : "blue", k + 1);
+            Matrix world = matrix_translate(0.0, 1.0, 4.0 * k - 6.0);
+            world = matrix_multiply(&turn, &world);
+            pieces_place(&builder, name, pane, glass, &world);
+        }
+    }
+    pieces_look(&builder,
+                &(Gaze){"default", {8.0, 6.0, 15.5}, {-0.25, -0.5, 1.0}, 0.6875, 0.5, 100.0});
+    lamps_lights(&builder);
+    for (int k = 0; k < 3; k++)
+        builder.scene.ambient[k] = 0.03125f;
+    return builder_finish(&builder, out);
+}
+
 /* ---- table ---------------------------------------------------------------------------------- */
 
 static const BuiltinScene scenes[] = {
@@ -274,6 +335,7 @@ static const BuiltinScene scenes[] = {
     {"crossing_planes", "four planes through each other: no order of objects is right",
      generate_crossing_planes},
     {"alpha_ladder", "1 to 16 equal layers by eight alphas from 1/255 to 1", generate_alpha_ladder},
+    {"lamps", "crossing panes among 64 lights of limited range", generate_lamps},
 };
 
 const BuiltinScene *generate_table(size_t *count)

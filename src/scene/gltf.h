@@ -17,6 +17,8 @@
  * metallic-roughness texture; without textures, TEXCOORD_0), floats with the file's bits. A
  * metallic-roughness texture on another set is left out.
  *
+ * Point lights have the colour, intensity and range of KHR_lights_punctual.
+ *
  * Beyond glTF, extras of nodes:
  *   "attenuation": [c, l, q]        on a light's node; without it (0, 0, 1), as the extension says
  *   "ambient": [r, g, b]            on any node; 0.25 without

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "scene/gltf_check.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,6 +39,13 @@ static const json_t *lights_of(const GltfCheck *check)
                            "lights");
 }
 
+/* Absent, or a number that a float holds and does not take for 0. */
+static bool valid_range(const json_t *range)
+{
+    float value = (float)json_number_value(range);
+    return !range || (json_is_number(range) && value > 0.0f && isfinite(value));
+}
+
 static Result check_light(const GltfCheck *check, size_t index)
 {
     const json_t *light = json_array_get(lights_of(check), index);
@@ -55,8 +63,9 @@ static Result check_light(const GltfCheck *check, size_t index)
         gltf_note(check, NOTE_SPOT);
     else if (strcmp(type, "point") != 0)
         return gltf_fail(check, "light", index, "a type of point, spot or directional");
-    else if (json_object_get(light, "range"))
-        gltf_note(check, NOTE_RANGE);
+    else if (!valid_range(json_object_get(light, "range")))
+        return gltf_fail(check, "light", index,
+                         "a finite number above 0, in single precision, as its range");
     return RESULT_OK;
 }
 

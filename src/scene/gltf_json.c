@@ -140,7 +140,6 @@ void gltf_json_warn(const GltfJson *json, const char *path)
         [NOTE_ORTHOGRAPHIC] = "orthographic cameras",
         [NOTE_DIRECTIONAL] = "directional lights",
         [NOTE_SPOT] = "spot lights",
-        [NOTE_RANGE] = "the range of lights",
         [NOTE_SCENES] = "scenes other than the default",
     };
     char line[1024] = "";

@@ -56,7 +56,6 @@ typedef enum GltfNote {
     NOTE_ORTHOGRAPHIC,
     NOTE_DIRECTIONAL,
     NOTE_SPOT,
-    NOTE_RANGE,
     NOTE_SCENES,
     NOTE_COUNT
 } GltfNote;

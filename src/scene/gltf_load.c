@@ -256,6 +256,7 @@ static void add_light(Loader *loader, const json_t *node, const Matrix *world)
         light.color[i] = factor * (intensity ? (float)json_number_value(intensity) : 1.0f);
         light.position[i] = world->m[12 + i];
     }
+    light.range = (float)json_number_value(json_object_get(from, "range")); /* 0 without one */
     extra_triple(loader, node, "attenuation", light.attenuation);
     builder_light(&loader->builder, &light);
 }

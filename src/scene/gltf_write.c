@@ -285,6 +285,8 @@ static json_t *light_json(Writer *writer, const Light *light)
     put(writer, json, "type", json_string("point"));
     put(writer, json, "color", floats(writer, color, 3));
     put(writer, json, "intensity", json_real((double)intensity));
+    if (light->range > 0.0f)
+        put(writer, json, "range", json_real((double)light->range));
     return json;
 }
 

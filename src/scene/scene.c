@@ -281,6 +281,10 @@ static Result check_light(size_t number, const Light *light)
                            "light %zu: attenuation is %g at a distance of 0.01, expected at least "
                            "1e-8",
                            number, nearest);
+    if (!(light->range >= 0.0f && isfinite(light->range)))
+        return result_fail(RESULT_BAD_INPUT,
+                           "light %zu: range is %g, expected a finite number from 0 (no limit)",
+                           number, (double)light->range);
     return RESULT_OK;
 }
 

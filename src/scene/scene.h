@@ -71,6 +71,7 @@ typedef struct Light {
     double position[3];   /* world space */
     float color[3];       /* radiant intensity, ≥ 0, finite */
     float attenuation[3]; /* constant, linear, quadratic: 1/(c + l·d + q·d²) */
+    float range;          /* how far it reaches, > 0: times 1 − (d/range)⁴; 0: without end */
 } Light;
 
 typedef struct Camera {

@@ -260,7 +260,7 @@ static Result explain(Study *study)
     if (result == RESULT_OK)
         add_single_precision(study, &image);
     RenderDesc *last = &best;
-    if (result == RESULT_OK && class_loses_ties(desc->method)) {
+    if (result == RESULT_OK && method_info(desc->method)->loses_ties) {
         last = &tied;
         result = step(study, BUDGET_TIES, &tied, NULL, &image);
     }

@@ -34,11 +34,6 @@ const char *class_text(PixelClass class)
     return classes[class].text;
 }
 
-bool class_loses_ties(MethodId method)
-{
-    return method_info(method)->exact && method != METHOD_PEEL_ID && method != METHOD_LINKED_LIST;
-}
-
 static bool has(const StructurePixel *side, uint32_t id)
 {
     for (int i = 0; i < side->count; i++)
@@ -63,7 +58,7 @@ static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int 
         return desc->nodes_per_pixel ? CLASS_LOST_OVERFLOW : CLASS_UNEXPLAINED;
     if (desc->bias > 0.0f)
         return CLASS_LOST_BIAS;
-    return class_loses_ties(desc->method) ? CLASS_LOST_TIE : CLASS_UNEXPLAINED;
+    return method_info(desc->method)->loses_ties ? CLASS_LOST_TIE : CLASS_UNEXPLAINED;
 }
 
 PixelClass class_of_fragments(const RenderDesc *desc, StructurePixel *actual,

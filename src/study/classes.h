@@ -34,9 +34,6 @@ typedef enum PixelClass {
 PixelClass class_of_fragments(const RenderDesc *desc, StructurePixel *actual,
                               const StructurePixel *truth, const StructurePixel *best);
 
-/* Whether the method keeps one of several fragments at one depth only. */
-bool class_loses_ties(MethodId method);
-
 const char *class_key(PixelClass class);  /* "equal", …; static */
 const char *class_text(PixelClass class); /* one line; static */
 

@@ -43,14 +43,13 @@ static const struct {
     {"painter", {.method = METHOD_PAINTER}, DEPTH_KIND_32F},
 };
 
-/* What is expected of a standard configuration. peel-id and linked-list lose nothing to ties: they
- * go by primitive where depths are equal. */
+/* What is expected of a standard configuration. */
 static HardExpect standard_expect(const HardCase *hard, const RenderDesc *desc, DepthKind depth)
 {
     const HardExpect *const by_depth[] = {&hard->d32f, &hard->d24, &hard->d16, &hard->reversed};
     HardExpect expect = *by_depth[depth];
     const HardCount none = {0, 0};
-    if (desc->method == METHOD_PEEL_ID || desc->method == METHOD_LINKED_LIST)
+    if (!method_info(desc->method)->loses_ties)
         expect.ties = none;
     if (desc->method != METHOD_PEEL || desc->accum != FORMAT_RGBA32F)
         memset(expect.pixels, 0, sizeof expect.pixels);

@@ -29,7 +29,7 @@ deep() {
     agree "$rendering: flatten" ours.exr flat.exr
 }
 
-for scene in teapot_hall teapot_hall_stress tutorial chain crossing_planes alpha_ladder; do
+for scene in teapot_hall teapot_hall_stress tutorial chain crossing_planes alpha_ladder lamps; do
     deep $scene $scene --size 320x180 --lights 16
 done
 deep 'one pixel' tutorial --size 1x1

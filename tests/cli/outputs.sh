@@ -23,7 +23,7 @@ has() {
     expect "$1 has '$3'" grep -q -- "$3" "$2"
 }
 
-for scene in teapot_hall teapot_hall_stress tutorial chain crossing_planes alpha_ladder; do
+for scene in teapot_hall teapot_hall_stress tutorial chain crossing_planes alpha_ladder lamps; do
     expect "scenes $scene" "$peel" scenes $scene -o $scene.gltf
     expect "data/scenes/$scene.gltf is what 'peel scenes' writes" \
         cmp $scene.gltf "$source/data/scenes/$scene.gltf"

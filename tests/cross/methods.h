@@ -15,6 +15,18 @@ static inline void methods_ok(Result result)
     ck_assert_msg(result == RESULT_OK, "%s", result_message());
 }
 
+/* A soup of the kind that the seed says, and desc's method and a window that suits every kind. */
+static inline void methods_make_soup(uint64_t seed, MethodId method, RenderDesc *desc, Soup *soup)
+{
+    Random random = random_seed(seed);
+    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
+    desc->width = 64;
+    desc->height = soup_kind_is_exact(kind) ? 64 : 45;
+    desc->method = method;
+    soup_make_kind(&random, kind, desc->width, desc->height, soup);
+    methods_ok(scene_validate(&soup->scene));
+}
+
 /* Of one random soup; *out: what was compared. */
 static inline void methods_check_soup(uint64_t seed, MethodId method, Bits *out)
 {

@@ -147,6 +147,20 @@ static inline void soup_texture(Random *random, Soup *soup)
     soup->scene.texture_count = SOUP_TEXTURES;
 }
 
+/* Ranges of lights in every second soup: most end within the soup, some before its first and some
+ * behind its last surface. Drawn by a generator of their own, so that a seed's soup is otherwise
+ * what it was without them. */
+static inline void soup_ranges(Random own, Soup *soup)
+{
+    static const float ends[] = {0.0f, 1e-20f, 1e-3f, 0.01f, 1e3f, 1e18f, 1e25f};
+    if (random_bits(&own) % 2)
+        return;
+    for (int i = 0; i < SOUP_LIGHTS; i++) {
+        float end = ends[random_bits(&own) % (sizeof ends / sizeof *ends)];
+        soup->lights[i].range = random_bits(&own) % 4 ? (float)random_range(&own, 0.5, 12.0) : end;
+    }
+}
+
 static inline void soup_make(Random *random, Soup *soup)
 {
     memset(soup, 0, sizeof *soup);
@@ -195,6 +209,7 @@ static inline void soup_make(Random *random, Soup *soup)
         soup->scene.background[c] = (float)random_unit(random);
     if (random_bits(random) % 2)
         soup_texture(random, soup);
+    soup_ranges(*random, soup);
 }
 
 /* Makes mesh and instance `index`, the scene's last, a transparent square facing the eye at view

@@ -4,6 +4,9 @@
 #include "testing.h"
 
 #include "base/memory.h"
+#include "ref/pipeline/pipeline.h"
+
+#include <string.h>
 
 static void ok(Result result)
 {
@@ -105,6 +108,49 @@ START_TEST(test_many_lights)
 }
 END_TEST
 
+static Frame render(const Scene *scene, RenderDesc desc, float range)
+{
+    Frame frame;
+    for (size_t i = 0; i < scene->light_count; i++)
+        scene->lights[i].range = range;
+    ok(scene_validate(scene));
+    ck_assert_uint_gt(compare(scene, &desc).fragments, 0);
+    ok(pipeline_render(scene, &desc, NULL, &frame));
+    return frame;
+}
+
+static size_t differing(const Frame *a, const Frame *b)
+{
+    size_t count = 0, pixels = (size_t)a->final.width * (size_t)a->final.height;
+    for (size_t i = 0; i < pixels; i++)
+        count += memcmp((const float *)a->final.pixels + 4 * i,
+                        (const float *)b->final.pixels + 4 * i, 4 * sizeof(float)) != 0;
+    return count;
+}
+
+/* The same bits in both, whatever the range. Too short a one leaves exactly the ambient light, a
+ * huge one exactly the light without end; one between cuts through what is seen. */
+START_TEST(test_ranges)
+{
+    static Soup soup;
+    RenderDesc desc = {.width = 97, .height = 61, .ggx = (GgxForm)_i, .back_light = _i};
+    make_soup(4, &soup);
+    soup.scene.light_count = SOUP_LIGHTS;
+    Frame endless = render(&soup.scene, desc, 0.0f), tiny = render(&soup.scene, desc, 1e-3f);
+    Frame cut = render(&soup.scene, desc, 4.0f), huge = render(&soup.scene, desc, 1e15f);
+    desc.lights = -1;
+    Frame ambient = render(&soup.scene, desc, 0.0f);
+    size_t lit = differing(&endless, &ambient), left = differing(&cut, &ambient);
+    ck_assert_uint_eq(differing(&tiny, &ambient), 0);
+    ck_assert_uint_eq(differing(&huge, &endless), 0);
+    ck_assert_uint_gt(left, lit / 8);
+    ck_assert_uint_lt(left, lit);
+    Frame *const frames[] = {&endless, &tiny, &cut, &huge, &ambient};
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++)
+        frame_free(frames[i]);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("gl against ref");
@@ -113,6 +159,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_soup, 0, sizeof variants / sizeof *variants);
     tcase_add_test(tcase, test_repeated_layers);
     tcase_add_test(tcase, test_many_lights);
+    tcase_add_loop_test(tcase, test_ranges, 0, 2);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

@@ -3,14 +3,11 @@
  * memory, and a bound against truth.
  *
  * PEEL_TEST_SEED=N runs the one random scene that a failure names; PEEL_TEST_COUNT=N that many. */
-#include "bits.h"
 #include "layers.h"
-#include "random_desc.h"
-#include "testing.h"
+#include "methods.h"
 
 #include "compare/against.h"
 #include "gl/gl_renderer.h"
-#include "ref/pipeline/pipeline.h"
 #include "ref/truth/truth.h"
 #include "scene/generate.h"
 #include "study/threeway.h"
@@ -21,11 +18,6 @@
 static const MethodId methods[] = {METHOD_DUAL, METHOD_FORWARD_DUAL};
 #define METHODS (int)(sizeof methods / sizeof *methods)
 
-static void ok(Result result)
-{
-    ck_assert_msg(result == RESULT_OK, "%s", result_message());
-}
-
 static void same_bits(const Scene *scene, const RenderDesc *desc, Bits *out)
 {
     bits_compare(scene, desc, out);
@@ -34,7 +26,7 @@ static void same_bits(const Scene *scene, const RenderDesc *desc, Bits *out)
 
 static void render_ref(const Scene *scene, const RenderDesc *desc, Frame *out)
 {
-    ok(pipeline_render(scene, desc, NULL, out));
+    methods_ok(pipeline_render(scene, desc, NULL, out));
 }
 
 enum {
@@ -231,8 +223,8 @@ START_TEST(test_truth)
         Scene scene;
         Threeway report;
         RenderDesc desc = {.width = 80, .height = 45, .lights = 3, .method = methods[_i]};
-        ok(scenes[i].generate(&scene));
-        ok(threeway_run(&scene, "", &desc, renderers, 2e-5, false, &report));
+        methods_ok(scenes[i].generate(&scene));
+        methods_ok(threeway_run(&scene, "", &desc, renderers, 2e-5, false, &report));
         printf("%-20s p99 %.3g, max %.3g\n", scenes[i].name, report.pairs[1].unaffected.p99_rel,
                report.pairs[1].unaffected.max_rel);
         fflush(stdout);
@@ -251,7 +243,7 @@ static uint64_t buffer_bytes(Renderer renderer, const Scene *scene, RenderDesc d
     Frame frame;
     desc.method = method;
     desc.ref_path = REF_PATH_DEFINITION;
-    ok(renderer(scene, &desc, NULL, &frame));
+    methods_ok(renderer(scene, &desc, NULL, &frame));
     uint64_t bytes = frame.buffer_bytes;
     frame_free(&frame);
     return bytes;
@@ -296,7 +288,7 @@ START_TEST(test_memory)
     /* Textures, and a little that is not limited; the last of them is one of the method's own. */
     size_t bytes = (size_t)buffer_bytes(gl_render, &layers.scene, desc, methods[_i]);
     desc.max_memory = bytes;
-    ok(gl_render(&layers.scene, &desc, NULL, &frame));
+    methods_ok(gl_render(&layers.scene, &desc, NULL, &frame));
     frame_free(&frame);
     desc.max_memory = bytes - 4 * PIXELS;
     ck_assert_int_eq(gl_render(&layers.scene, &desc, NULL, &frame), RESULT_NO_MEMORY);

@@ -1,35 +1,15 @@
 /* Method linked-list: ref/pipeline against OpenGL on random soups, and what the method promises. */
-#include "bits.h"
 #include "layers.h"
-#include "soup_kinds.h"
-#include "testing.h"
+#include "methods.h"
 
 #include "frame/node.h"
 #include "gl/gl_renderer.h"
-#include "ref/pipeline/pipeline.h"
 
 #include <string.h>
 
 enum {
     SOUPS = 2 /* per setting */
 };
-
-static void ok(Result result)
-{
-    ck_assert_msg(result == RESULT_OK, "%s", result_message());
-}
-
-/* A soup of the kind that the seed says, in a window that suits every kind. */
-static void make_soup(uint64_t seed, RenderDesc *desc, Soup *soup)
-{
-    Random random = random_seed(seed);
-    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
-    desc->width = 64;
-    desc->height = soup_kind_is_exact(kind) ? 64 : 45;
-    desc->method = METHOD_LINKED_LIST;
-    soup_make_kind(&random, kind, desc->width, desc->height, soup);
-    ok(scene_validate(&soup->scene));
-}
 
 static bool same_image(const Frame *a, const Frame *b)
 {
@@ -69,7 +49,7 @@ START_TEST(test_bits)
         RenderDesc desc = variants[_i];
         uint64_t seed = 1 + (uint64_t)_i * SOUPS + i;
         Bits bits;
-        make_soup(seed, &desc, &soup);
+        methods_make_soup(seed, METHOD_LINKED_LIST, &desc, &soup);
         bits_compare(&soup.scene, &desc, &bits);
         ck_assert_msg(bits.differing == 0, "seed %llu: %s", (unsigned long long)seed,
                       bits.difference);
@@ -85,11 +65,11 @@ START_TEST(test_little)
     static Soup soup;
     RenderDesc desc = {0};
     Bits bits;
-    make_soup(13, &desc, &soup);
+    methods_make_soup(13, METHOD_LINKED_LIST, &desc, &soup);
     desc.width = desc.height = 1;
     bits_compare(&soup.scene, &desc, &bits);
     ck_assert_msg(bits.differing == 0, "%s", bits.difference);
-    make_soup(13, &desc, &soup);
+    methods_make_soup(13, METHOD_LINKED_LIST, &desc, &soup);
     for (int i = 0; i < 8; i++)
         soup.materials[i].alpha_mode = ALPHA_OPAQUE;
     bits_compare(&soup.scene, &desc, &bits);
@@ -112,10 +92,10 @@ START_TEST(test_counts)
     for (uint64_t seed = 1; seed <= 6 * SOUP_KINDS; seed++) {
         RenderDesc desc = {.depth_func = (DepthFunc)(seed & 1)};
         Frame list, peel;
-        make_soup(seed, &desc, &soup);
-        ok(pipeline_render(&soup.scene, &desc, NULL, &list));
+        methods_make_soup(seed, METHOD_LINKED_LIST, &desc, &soup);
+        methods_ok(pipeline_render(&soup.scene, &desc, NULL, &list));
         desc.method = METHOD_PEEL;
-        ok(pipeline_render(&soup.scene, &desc, NULL, &peel));
+        methods_ok(pipeline_render(&soup.scene, &desc, NULL, &peel));
         ck_assert_uint_eq(list.layers.fragments, peel.layers.fragments);
         ck_assert_uint_eq(list.layers.lost_to_ties, 0);
         ck_assert_uint_eq((uint64_t)list.peels, list.layers.max);
@@ -138,7 +118,7 @@ static void make_squares(Soup *soup, uint32_t count, RenderDesc *desc)
     soup->camera.yfov = 1.0;
     for (uint32_t i = 0; i < count; i++)
         soup_square(soup, i, 2.0 + i, -1, 1);
-    ok(scene_validate(&soup->scene));
+    methods_ok(scene_validate(&soup->scene));
     *desc = (RenderDesc){.width = 192, .height = 20, .method = METHOD_LINKED_LIST};
 }
 
@@ -149,14 +129,14 @@ START_TEST(test_overflow)
     Frame full, short_of;
     Renderer renderer = _i ? gl_render : pipeline_render;
     make_squares(&soup, 6, &desc);
-    ok(renderer(&soup.scene, &desc, NULL, &full));
+    methods_ok(renderer(&soup.scene, &desc, NULL, &full));
     ck_assert_uint_eq(full.nodes, 6 * 192 * 20);
     ck_assert_uint_eq(full.layers.fragments, full.nodes);
     ck_assert_uint_eq(full.layers.lost_to_overflow, 0);
     ck_assert_int_eq(full.geometry_passes, _i ? 2 : 1); /* gl guessed less */
     desc.nodes_per_pixel = 1;
     result_warnings_enable(false);
-    ok(renderer(&soup.scene, &desc, NULL, &short_of));
+    methods_ok(renderer(&soup.scene, &desc, NULL, &short_of));
     result_warnings_enable(true);
     ck_assert_uint_eq(short_of.nodes, full.nodes);
     ck_assert_uint_eq(short_of.layers.lost_to_overflow, 5 * 192 * 20);
@@ -167,7 +147,7 @@ START_TEST(test_overflow)
     ck_assert(!same_image(&full, &short_of));
     desc.nodes_per_pixel = 6; /* just enough */
     frame_free(&short_of);
-    ok(renderer(&soup.scene, &desc, NULL, &short_of));
+    methods_ok(renderer(&soup.scene, &desc, NULL, &short_of));
     ck_assert_uint_eq(short_of.layers.lost_to_overflow, 0);
     ck_assert(same_image(&full, &short_of));
     frame_free(&full);
@@ -183,7 +163,7 @@ START_TEST(test_memory_limit)
     Frame frame;
     Renderer renderer = _i ? gl_render : pipeline_render;
     make_squares(&soup, 6, &desc);
-    ok(renderer(&soup.scene, &desc, NULL, &frame));
+    methods_ok(renderer(&soup.scene, &desc, NULL, &frame));
     desc.max_memory = (size_t)frame.buffer_bytes - 6 * 192 * 20 * 8;
     frame_free(&frame);
     ck_assert_int_eq(renderer(&soup.scene, &desc, NULL, &frame), RESULT_NO_MEMORY);
@@ -199,7 +179,7 @@ START_TEST(test_pass_limit)
     Renderer renderer = _i ? gl_render : pipeline_render;
     make_squares(&soup, 6, &desc);
     desc.passes = 2;
-    ok(renderer(&soup.scene, &desc, NULL, &frame));
+    methods_ok(renderer(&soup.scene, &desc, NULL, &frame));
     ck_assert_int_eq(frame.peels, 2);
     ck_assert_uint_eq(frame.layers.max, 6);
     ck_assert_uint_eq(frame.layers.lost_to_pass_limit, 4 * 192 * 20);
@@ -216,9 +196,9 @@ START_TEST(test_edges)
     make_squares(&soup, 1, &desc);
     soup_square(&soup, 0, 2.0, -0.5, 0.5);
     soup.materials[2].base_color[3] = 0.5f;
-    ok(pipeline_render(&soup.scene, &desc, NULL, &plain));
+    methods_ok(pipeline_render(&soup.scene, &desc, NULL, &plain));
     desc.post = POST_EDGES;
-    ok(pipeline_render(&soup.scene, &desc, NULL, &edges));
+    methods_ok(pipeline_render(&soup.scene, &desc, NULL, &edges));
     int outline = 0;
     for (int y = 0; y < 20; y++)
         for (int x = 0; x < 192; x++) {
@@ -233,10 +213,10 @@ START_TEST(test_edges)
     desc.method = METHOD_PEEL; /* the option means nothing elsewhere */
     desc.ref_path = REF_PATH_DEFINITION;
     frame_free(&edges);
-    ok(pipeline_render(&soup.scene, &desc, NULL, &edges));
+    methods_ok(pipeline_render(&soup.scene, &desc, NULL, &edges));
     desc.post = POST_NONE;
     frame_free(&plain);
-    ok(pipeline_render(&soup.scene, &desc, NULL, &plain));
+    methods_ok(pipeline_render(&soup.scene, &desc, NULL, &plain));
     ck_assert(same_image(&plain, &edges));
     frame_free(&plain);
     frame_free(&edges);

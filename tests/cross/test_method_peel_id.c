@@ -1,12 +1,8 @@
 /* Method peel-id: ref/pipeline against OpenGL on random soups, and what the method promises. */
-#include "bits.h"
-#include "soup_kinds.h"
-#include "testing.h"
+#include "methods.h"
 
-#include "compare/store.h"
 #include "compare/structure.h"
 #include "gl/gl_renderer.h"
-#include "ref/pipeline/pipeline.h"
 #include "ref/truth/truth.h"
 
 #include <stdio.h>
@@ -15,23 +11,6 @@
 enum {
     SOUPS = 3 /* per setting */
 };
-
-static void ok(Result result)
-{
-    ck_assert_msg(result == RESULT_OK, "%s", result_message());
-}
-
-/* A soup of the kind that the seed says, in a window that suits every kind. */
-static void make_soup(uint64_t seed, RenderDesc *desc, Soup *soup)
-{
-    Random random = random_seed(seed);
-    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
-    desc->width = 64;
-    desc->height = soup_kind_is_exact(kind) ? 64 : 45;
-    desc->method = METHOD_PEEL_ID;
-    soup_make_kind(&random, kind, desc->width, desc->height, soup);
-    ok(scene_validate(&soup->scene));
-}
 
 /* ---- ref against gl ---------------------------------------------------------------------------
  */
@@ -66,7 +45,7 @@ START_TEST(test_bits)
         RenderDesc desc = variants[_i];
         uint64_t seed = 1 + (uint64_t)_i * SOUPS + i;
         Bits bits;
-        make_soup(seed, &desc, &soup);
+        methods_make_soup(seed, METHOD_PEEL_ID, &desc, &soup);
         bits_compare(&soup.scene, &desc, &bits);
         ck_assert_msg(bits.differing == 0, "seed %llu: %s", (unsigned long long)seed,
                       bits.difference);
@@ -82,7 +61,7 @@ END_TEST
 static void render(Renderer renderer, const Scene *scene, const RenderDesc *desc, TraceSink *sink,
                    Frame *out)
 {
-    ok(renderer(scene, desc, sink, out));
+    methods_ok(renderer(scene, desc, sink, out));
 }
 
 /* Every fragment is a layer; peel loses those at equal depths. */
@@ -93,7 +72,7 @@ START_TEST(test_keeps_ties)
     for (uint64_t seed = 1; seed <= 4 * SOUP_KINDS; seed++) {
         RenderDesc desc = {.depth_func = (DepthFunc)(seed & 1)};
         Frame peel, peel_id;
-        make_soup(seed, &desc, &soup);
+        methods_make_soup(seed, METHOD_PEEL_ID, &desc, &soup);
         render(pipeline_render, &soup.scene, &desc, NULL, &peel_id);
         desc.method = METHOD_PEEL;
         render(pipeline_render, &soup.scene, &desc, NULL, &peel);
@@ -124,9 +103,9 @@ START_TEST(test_truth_order)
     soup.camera.yfov = 1.0;
     for (uint32_t i = 0; i < 5; i++)
         soup_square(&soup, i, i == 3 ? 1.5 : 2.0, -0.2 * (double)i, 0.9);
-    ok(scene_validate(&soup.scene));
+    methods_ok(scene_validate(&soup.scene));
     for (int i = 0; i < 2; i++)
-        ok(store_create(0, &stores[i]));
+        methods_ok(store_create(0, &stores[i]));
     render(pipeline_render, &soup.scene, &desc, store_sink(stores[0]), &ref);
     render(truth_render, &soup.scene, &desc, store_sink(stores[1]), &truth);
     ck_assert_uint_eq(ref.layers.lost_to_ties, 0);
@@ -136,7 +115,7 @@ START_TEST(test_truth_order)
         Image ids[2];
         snprintf(name, sizeof name, "peel.%d.primitive", peel);
         for (int i = 0; i < 2; i++)
-            ok(store_image(stores[i], store_find(stores[i], name), &ids[i]));
+            methods_ok(store_image(stores[i], store_find(stores[i], name), &ids[i]));
         ck_assert_mem_eq(ids[0].pixels, ids[1].pixels, 192 * 20 * sizeof(uint32_t));
         for (int i = 0; i < 2; i++)
             image_free(&ids[i]);
@@ -154,7 +133,7 @@ START_TEST(test_pass_limit)
     static Soup soup;
     RenderDesc desc = {0};
     Frame all, two;
-    make_soup(SOUP_PERSPECTIVE, &desc, &soup);
+    methods_make_soup(SOUP_PERSPECTIVE, METHOD_PEEL_ID, &desc, &soup);
     render(pipeline_render, &soup.scene, &desc, NULL, &all);
     desc.passes = 2;
     render(pipeline_render, &soup.scene, &desc, NULL, &two);

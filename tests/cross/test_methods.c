@@ -348,7 +348,7 @@ static bool has_order(int method)
 
 static bool keeps_ties(int method)
 {
-    return method == METHOD_PEEL_ID || method == METHOD_LINKED_LIST || method == METHOD_PAINTER;
+    return has_order(method) && !method_info((MethodId)method)->loses_ties;
 }
 
 START_TEST(test_draw_order)

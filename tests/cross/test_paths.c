@@ -171,6 +171,36 @@ START_TEST(test_raw_test_loses_close_layers)
 }
 END_TEST
 
+/* With the raw test a fragment in front of the far plane may be stored at the far end, where the
+ * depth test does not let it pass, unless it is LEQUAL. */
+START_TEST(test_raw_test_stores_the_far_end)
+{
+    static Soup soup;
+    Random random = random_seed(1);
+    soup_make(&random, &soup);
+    soup.camera.yfov = 1.0;
+    soup.camera.near = 1.0;
+    soup.camera.far = 100.0;
+    for (uint32_t i = 0; i < 5; i++)
+        soup_square(&soup, i, 99.99, -1, 0);
+    for (int func = DEPTH_LESS; func <= DEPTH_LEQUAL; func++) {
+        RenderDesc desc = {.width = 40,
+                           .height = 20,
+                           .depth = FORMAT_D16,
+                           .depth_func = (DepthFunc)func,
+                           .peel_test = PEEL_TEST_RAW};
+        Frame definition, tile;
+        render(&soup.scene, desc, REF_PATH_DEFINITION, NULL, &definition);
+        render(&soup.scene, desc, REF_PATH_TILE, NULL, &tile);
+        ck_assert_uint_gt(definition.layers.fragments, 0);
+        ck_assert_int_eq(definition.peels > 0, func == DEPTH_LEQUAL);
+        check_frames(&tile, &definition);
+        frame_free(&definition);
+        frame_free(&tile);
+    }
+}
+END_TEST
+
 /* ---- the trace ---------------------------------------------------------------------------------
  */
 
@@ -470,6 +500,7 @@ int main(void)
     tcase_set_timeout(tcase, 300);
     tcase_add_test(tcase, test_soups);
     tcase_add_test(tcase, test_raw_test_loses_close_layers);
+    tcase_add_test(tcase, test_raw_test_stores_the_far_end);
     tcase_add_test(tcase, test_trace);
     tcase_add_test(tcase, test_trace_failure);
     tcase_add_test(tcase, test_ties);

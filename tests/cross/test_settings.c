@@ -29,6 +29,7 @@ static const NamedScene scenes[] = {
     {"chain", NULL, false},
     {"crossing_planes", NULL, false},
     {"alpha_ladder", NULL, false},
+    {"lamps", NULL, false},
     {"BoxTextured", MODELS "BoxTextured-glTF/BoxTextured.gltf", false},
     {"ClearCoatTest", MODELS "ClearCoat-glTF/ClearCoatTest.gltf", false},
     {"ClearCoatTest, masked", MODELS "ClearCoat-glTF/ClearCoatTest.gltf", true},

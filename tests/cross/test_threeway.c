@@ -63,7 +63,7 @@ static const struct {
 } cases[] = {
     {"teapot_hall", -1},   {"teapot_hall_stress", -1}, {"tutorial", -1},
     {"chain", -1},         {"crossing_planes", -1},    {"alpha_ladder", -1},
-    {"teapot_hall", 0.3f}, {"crossing_planes", 0.3f},
+    {"teapot_hall", 0.3f}, {"crossing_planes", 0.3f},  {"lamps", -1},
 };
 
 START_TEST(test_scenes)

@@ -73,6 +73,13 @@ static inline const char *write_external(const char *uri)
     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":2}]}]"
 #define ONE_NODE "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}]"
 
+/* Members, for snprintf: the quad and a point light on a scaled node, its range to be filled in. */
+#define LIGHT_OF_RANGE                                                                             \
+    QUAD_MESH ",\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"scale\":[2,2,2],"        \
+              "\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],"                          \
+              "\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{"                      \
+              "\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\",\"range\":%s}]}}"
+
 static inline void load(const char *path, Scene *out)
 {
     Result result = gltf_load(path, out);

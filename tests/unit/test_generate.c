@@ -208,6 +208,8 @@ static uint64_t digest_scene(const Scene *scene)
     for (size_t i = 0; i < scene->light_count; i++) {
         digest = digest_bytes(digest, scene->lights[i].position, 3 * sizeof(double));
         digest = digest_bytes(digest, scene->lights[i].color, 3 * sizeof(float));
+        if (scene->lights[i].range > 0.0f)
+            digest = digest_bytes(digest, &scene->lights[i].range, sizeof(float));
     }
     for (size_t i = 0; i < scene->camera_count; i++)
         digest = digest_bytes(digest, scene->cameras[i].world.m, 16 * sizeof(double));
@@ -229,10 +231,13 @@ START_TEST(scenes_are_the_same_everywhere)
     static const struct {
         const char *name;
         uint64_t digest;
-    } pinned[] = {
-        {"teapot_hall", 0xbcf96e839b762b68},     {"teapot_hall_stress", 0xa31793fe51915044},
-        {"tutorial", 0x6569e6769b22aa91},        {"chain", 0x61834bda2b6f16b0},
-        {"crossing_planes", 0x761ec8dae1f46c35}, {"alpha_ladder", 0xb8f5044236a485f7}};
+    } pinned[] = {{"teapot_hall", 0xbcf96e839b762b68},
+                  {"teapot_hall_stress", 0xa31793fe51915044},
+                  {"tutorial", 0x6569e6769b22aa91},
+                  {"chain", 0x61834bda2b6f16b0},
+                  {"crossing_planes", 0x761ec8dae1f46c35},
+                  {"alpha_ladder", 0xb8f5044236a485f7},
+                  {"lamps", 0x02c222c48eb9968d}};
     size_t count;
     generate_table(&count);
     ck_assert_uint_eq(count, sizeof pinned / sizeof pinned[0]);
@@ -329,6 +334,24 @@ START_TEST(ladder_counts_its_layers)
 }
 END_TEST
 
+/* Every lamp reaches the floor, and less than a third of its width: its light ends there. */
+START_TEST(lamps_do_not_reach_far)
+{
+    Scene scene;
+    generate("lamps", &scene);
+    ck_assert_uint_eq(scene.light_count, 64);
+    ck_assert_uint_eq(transparent_instances(&scene), 8);
+    for (size_t i = 0; i < scene.light_count; i++) {
+        const Light *light = &scene.lights[i];
+        ck_assert(light->position[1] > 0.0 && light->position[1] < (double)light->range);
+        ck_assert_float_le(light->range, 2.5f);
+        for (int k = 0; k < 3; k += 2)
+            ck_assert(fabs(light->position[k]) < 8.0);
+    }
+    scene_free(&scene);
+}
+END_TEST
+
 START_TEST(unknown_scene)
 {
     ck_assert_ptr_null(generate_find("no such scene"));
@@ -349,6 +372,7 @@ int main(void)
     tcase_add_test(test, placements_fit_in_float);
     tcase_add_test(test, hall_is_as_described);
     tcase_add_test(test, ladder_counts_its_layers);
+    tcase_add_test(test, lamps_do_not_reach_far);
     tcase_add_test(test, unknown_scene);
     suite_add_tcase(suite, test);
     return testing_run(suite);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "scene/generate.h"
 
+#include "current_gltf.h"
 #include "small_gltf.h"
 
 #include <math.h>
@@ -40,6 +41,14 @@ static void same_matrix(const Matrix *a, const Matrix *b)
         ck_assert(x[i] == y[i]); /* −0 may come back as 0 */
 }
 
+static void same_light(const Light *a, const Light *b)
+{
+    ck_assert_mem_eq(a->position, b->position, sizeof a->position);
+    ck_assert_mem_eq(a->color, b->color, sizeof a->color);
+    ck_assert_mem_eq(a->attenuation, b->attenuation, sizeof a->attenuation);
+    ck_assert_float_bits(a->range, b->range);
+}
+
 static void same_scene(const Scene *a, const Scene *b)
 {
     ck_assert_uint_eq(a->mesh_count, b->mesh_count);
@@ -55,7 +64,7 @@ static void same_scene(const Scene *a, const Scene *b)
         same_matrix(&x->world, &y->world);
     }
     for (size_t i = 0; i < a->light_count; i++)
-        ck_assert_mem_eq(&a->lights[i], &b->lights[i], sizeof(Light));
+        same_light(&a->lights[i], &b->lights[i]);
     for (size_t i = 0; i < a->camera_count; i++) {
         const Camera *x = &a->cameras[i], *y = &b->cameras[i];
         ck_assert_str_eq(x->name, y->name);
@@ -94,24 +103,8 @@ START_TEST(data_files_are_current)
 {
     size_t count;
     const BuiltinScene *table = generate_table(&count);
-    for (size_t i = 0; i < count; i++) {
-        Scene scene;
-        char stored[256];
-        unsigned char *expected, *got;
-        size_t expected_count, got_count;
-        const char *path = scratch_path("fresh.gltf");
-        snprintf(stored, sizeof stored, "%s/data/scenes/%s.gltf", PEEL_SOURCE_DIR, table[i].name);
-        ck_assert_int_eq(table[i].generate(&scene), RESULT_OK);
-        ck_assert_int_eq(gltf_write(&scene, path), RESULT_OK);
-        ck_assert_int_eq(gltf_file_read(path, &expected, &expected_count), RESULT_OK);
-        ck_assert_msg(gltf_file_read(stored, &got, &got_count) == RESULT_OK, "%s",
-                      result_message());
-        ck_assert_msg(got_count == expected_count && memcmp(got, expected, got_count) == 0,
-                      "%s differs from what the generator writes", stored);
-        free(expected);
-        free(got);
-        scene_free(&scene);
-    }
+    for (size_t i = 0; i < count; i++)
+        current_gltf_check("scenes", table[i].name, table[i].generate);
 }
 END_TEST
 
@@ -310,6 +303,7 @@ START_TEST(lights_and_extras)
     ck_assert_float_bits(scene.lights[0].attenuation[0], 0.0f);
     ck_assert_float_bits(scene.lights[0].attenuation[2], 1.0f);
     ck_assert_float_bits(scene.lights[1].attenuation[1], 0.14f);
+    ck_assert_float_bits(scene.lights[0].range, 0.0f);
     ck_assert_float_bits(scene.ambient[1], 0.5f);
     ck_assert_float_bits(scene.background[2], 3.0f);
     ck_assert_double_eq(scene.light_degrees_per_second, 7.0);
@@ -364,6 +358,35 @@ START_TEST(one_warning_names_everything)
 }
 END_TEST
 
+/* To the bit, written and read again; the node's scale does not stretch it. */
+START_TEST(light_ranges)
+{
+    static const struct {
+        const char *text;
+        float range;
+    } rows[] = {{"2.5", 2.5f},
+                {"3", 3.0f},
+                {"0.1", 0.1f},
+                {"1e-45", 0x1p-149f},
+                {"3.4028234e38", 0x1.fffffep127f}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        char members[1024];
+        Scene scene, again;
+        snprintf(members, sizeof members, LIGHT_OF_RANGE, rows[i].text);
+        ck_assert_str_eq(said(members), "");
+        load_quad(members, &scene);
+        ck_assert_uint_eq(scene.light_count, 1);
+        ck_assert_float_bits(scene.lights[0].range, rows[i].range);
+        const char *path = scratch_path("again.gltf");
+        ck_assert_int_eq(gltf_write(&scene, path), RESULT_OK);
+        load(path, &again);
+        ck_assert_float_bits(again.lights[0].range, rows[i].range);
+        scene_free(&scene);
+        scene_free(&again);
+    }
+}
+END_TEST
+
 START_TEST(nothing_to_say)
 {
     ck_assert_str_eq(said(QUAD_MESH "," ONE_NODE), "");
@@ -388,6 +411,7 @@ int main(void)
     tcase_add_test(test, nodes_multiply_from_the_root);
     tcase_add_test(test, lights_and_extras);
     tcase_add_test(test, one_warning_names_everything);
+    tcase_add_test(test, light_ranges);
     tcase_add_test(test, nothing_to_say);
     suite_add_tcase(suite, test);
     return testing_run(suite);

@@ -172,6 +172,23 @@ START_TEST(broken_nodes)
 }
 END_TEST
 
+START_TEST(broken_ranges)
+{
+    static const char *const ranges[] = {"0",    "-1",    "-0.0", "1e-60", "1e39",
+                                         "null", "\"2\"", "[2]",  "true",  "{}"};
+    char members[1024];
+    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+        snprintf(members, sizeof members, LIGHT_OF_RANGE, ranges[i]);
+        refused(members, RESULT_BAD_INPUT, "light 0: expected a finite number above 0");
+    }
+    static const char *const no_json[] = {"NaN", "Infinity", "1e400"};
+    for (size_t i = 0; i < sizeof no_json / sizeof no_json[0]; i++) {
+        snprintf(members, sizeof members, LIGHT_OF_RANGE, no_json[i]);
+        refused(members, RESULT_BAD_INPUT, "");
+    }
+}
+END_TEST
+
 START_TEST(too_deep_a_graph)
 {
     enum {
@@ -249,6 +266,7 @@ int main(void)
     tcase_add_test(test, broken_geometry);
     tcase_add_test(test, index_out_of_range);
     tcase_add_test(test, broken_nodes);
+    tcase_add_test(test, broken_ranges);
     tcase_add_test(test, too_deep_a_graph);
     tcase_add_test(test, cylinder_engine);
     tcase_add_test(test, sample_models);

@@ -131,6 +131,14 @@ START_TEST(bad_lights)
     scene.lights[0].position[2] = NAN;
     refused("light 0: position");
     scene.lights[0] = good;
+    static const float ranges[] = {-1.0f, INFINITY, NAN};
+    for (int i = 0; i < 3; i++) {
+        scene.lights[0].range = ranges[i];
+        refused("light 0: range is");
+    }
+    scene.lights[0].range = 1e-45f; /* short, but legal */
+    ck_assert_int_eq(scene_validate(&scene), RESULT_OK);
+    scene.lights[0] = good;
 }
 END_TEST
 

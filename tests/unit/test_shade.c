@@ -157,6 +157,62 @@ START_TEST(test_guards)
 }
 END_TEST
 
+/* A point, its light at `part` of its range from it, and the range. */
+static void in_range(Random *random, double part, Texel *texel, ViewLight *light)
+{
+    double d2 = 0;
+    highlight(random, texel, light);
+    texel->material[1] = (float)random_unit(random);
+    for (int k = 0; k < 3; k++)
+        d2 += ((double)light->position[k] - texel->position[k]) *
+              ((double)light->position[k] - texel->position[k]);
+    light->inverse_range2 = (float)(part * part / d2);
+}
+
+/* Within single precision of the window in double; of a light without end the same bits. */
+START_TEST(test_window)
+{
+    Random random = random_seed(7);
+    for (int i = 0; i < COUNT; i++) {
+        Texel texel;
+        ViewLight light;
+        float whole[4], lit[4];
+        double part = random_range(&random, 0, 1);
+        in_range(&random, part, &texel, &light);
+        View view = one_light(&light);
+        shade(&view, (ShadeForm){0}, &texel, lit);
+        view.lights[0].inverse_range2 = 0;
+        shade(&view, (ShadeForm){0}, &texel, whole);
+        double window = 1 - part * part * part * part;
+        for (int k = 0; k < 3; k++)
+            ck_assert_double_eq_tol(lit[k], whole[k] * window, whole[k] * 0x1p-20);
+        view.lights[0].inverse_range2 = 0x1p-60f; /* its window rounds to 1 */
+        shade(&view, (ShadeForm){0}, &texel, lit);
+        ck_assert_mem_eq(lit, whole, sizeof lit);
+    }
+}
+END_TEST
+
+/* Beyond the range, however little: exactly the ambient light, as without the light. */
+START_TEST(test_out_of_range)
+{
+    Random random = random_seed(8);
+    for (int i = 0; i < COUNT; i++) {
+        Texel texel;
+        ViewLight light;
+        float lit[4], ambient[4];
+        ShadeForm form = {.ggx = (GgxForm)(i & 1), .back_light = i & 2};
+        in_range(&random, i & 4 ? 1.0001 : random_range(&random, 1.0001, 100), &texel, &light);
+        View view = one_light(&light);
+        view.ambient[0] = view.ambient[1] = view.ambient[2] = 0.25f;
+        shade(&view, form, &texel, lit);
+        view.light_count = 0;
+        shade(&view, form, &texel, ambient);
+        ck_assert_mem_eq(lit, ambient, sizeof lit);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("shade");
@@ -165,6 +221,8 @@ int main(void)
     tcase_add_test(tests, test_stable_form);
     tcase_add_test(tests, test_back_light);
     tcase_add_test(tests, test_guards);
+    tcase_add_test(tests, test_window);
+    tcase_add_test(tests, test_out_of_range);
     suite_add_tcase(suite, tests);
     return testing_run(suite);
 }

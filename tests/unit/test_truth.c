@@ -238,8 +238,8 @@ START_TEST(test_shading_place)
         memcpy(&stage->normals[0][3 * k], normal, sizeof normal);
     }
     stage->scene.light_count = 1;
-    stage->lights[0] = (Light){{0.5, 1.25, -1}, {2, 3, 4}, {0, 0, 1}};
-    ViewLight light = {{0.5f, 1.25f, -1}, {2, 3, 4}, {0, 0, 1}};
+    stage->lights[0] = (Light){{0.5, 1.25, -1}, {2, 3, 4}, {0, 0, 1}, 0};
+    ViewLight light = {{0.5f, 1.25f, -1}, {2, 3, 4}, {0, 0, 1}, 0};
     View view = {.light_count = 1, .lights = &light, .ambient = {1, 1, 1}};
     Frame frame;
     const RenderDesc desc = {.width = 96, .height = 96};

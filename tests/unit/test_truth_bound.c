@@ -275,7 +275,8 @@ static void print_totals(const char *name, const Totals *totals)
 
 START_TEST(test_scenes)
 {
-    static const char *const names[] = {"teapot_hall", "tutorial", "chain", "crossing_planes"};
+    static const char *const names[] = {"teapot_hall", "tutorial", "chain", "crossing_planes",
+                                        "lamps"};
     Scene scene;
     Totals totals = {0};
     Random random = random_seed(7);
@@ -316,7 +317,7 @@ int main(void)
     Suite *suite = suite_create("truth_bound");
     TCase *tcase = tcase_create("bound");
     tcase_set_timeout(tcase, 120);
-    tcase_add_loop_test(tcase, test_scenes, 0, 4);
+    tcase_add_loop_test(tcase, test_scenes, 0, 5);
     tcase_add_test(tcase, test_soups);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);

@@ -21,7 +21,7 @@ START_TEST(test_head_on)
     for (int i = 0; i < 8; i++) {
         float roughness = i & 1 ? 0.5f : 1.0f, metallic = i & 2 ? 1.0f : 0.25f;
         double distance = i & 4 ? 2.0 : 0.5; /* from light to surface */
-        ViewLight light = {{0, 0, (float)(distance - 3)}, {1, 2, 4}, {1, 0.5f, 0.25f}};
+        ViewLight light = {{0, 0, (float)(distance - 3)}, {1, 2, 4}, {1, 0.5f, 0.25f}, 0};
         View view = {.light_count = 1, .lights = &light, .ambient = {0.25f, 0.25f, 0.5f}};
         MaterialSample m = material(roughness, metallic);
         Surface surface = {{0, 0, -3}, {0, 0, 7}, m, false, false};
@@ -45,7 +45,7 @@ END_TEST
  * light, so N·V = N·L = H·V = cos 45° and N·H = 1. */
 START_TEST(test_bisecting_normal)
 {
-    ViewLight light = {{5, 0, -3}, {2, 2, 2}, {0, 0, 1}};
+    ViewLight light = {{5, 0, -3}, {2, 2, 2}, {0, 0, 1}, 0};
     View view = {.light_count = 1, .lights = &light};
     MaterialSample m = material(0.5f, 0);
     Surface surface = {{0, 0, -3}, {1, 0, 1}, m, false, false};
@@ -63,7 +63,7 @@ END_TEST
 /* Ambient only: no lights, or all of them behind. */
 START_TEST(test_unlit)
 {
-    ViewLight behind = {{0, 0, -9}, {100, 100, 100}, {1, 0, 0}};
+    ViewLight behind = {{0, 0, -9}, {100, 100, 100}, {1, 0, 0}, 0};
     MaterialSample m = material(0.5f, 0);
     Surface surface = {{0, 0, -3}, {0, 0, 1}, m, false, false};
     for (size_t count = 0; count < 2; count++) {
@@ -81,7 +81,7 @@ END_TEST
  * one in front the same as ever. */
 START_TEST(test_back_light)
 {
-    ViewLight behind = {{1.5f, 0.5f, -4.0f}, {1, 2, 4}, {0.5f, 0.25f, 1}}, front = behind;
+    ViewLight behind = {{1.5f, 0.5f, -4.0f}, {1, 2, 4}, {0.5f, 0.25f, 1}, 0}, front = behind;
     front.position[2] = -2.0f; /* mirrored at z = −3 */
     View view_behind = {.light_count = 1, .lights = &behind},
          view_front = {.light_count = 1, .lights = &front};
@@ -113,11 +113,31 @@ START_TEST(test_back_light)
 }
 END_TEST
 
+/* The window's closed form, and nothing from the range on. */
+START_TEST(test_range)
+{
+    for (int i = 0; i < 64; i++) {
+        double distance = 0.25 + i / 8.0, range = 4.0, part = distance / range;
+        ViewLight light = {{0, 0, (float)(distance - 9)}, {1, 2, 4}, {0, 0, 1}, 0.0625f};
+        View view = {.light_count = 1, .lights = &light};
+        Surface surface = {{0, 0, -9}, {0.5, 0, 1}, material(0.5f, 0.5f), i & 1, false};
+        double rgb[3], whole[3], window = part < 1 ? 1 - part * part * part * part : 0;
+        radiance_shade(&view, &surface, rgb);
+        light.inverse_range2 = 0;
+        radiance_shade(&view, &surface, whole);
+        for (int k = 0; k < 3; k++) {
+            ck_assert_double_gt(whole[k], 0);
+            ck_assert_double_eq_tol(rgb[k], whole[k] * window, 1e-15 * whole[k]);
+        }
+    }
+}
+END_TEST
+
 /* The guards: no normal, a light on the surface, a surface at the eye, roughness 0. */
 START_TEST(test_guards)
 {
     for (int i = 0; i < 16; i++) {
-        ViewLight light = {{0, 0, i & 1 ? -3 : 0}, {1, 1, 1}, {0, 0, 1}};
+        ViewLight light = {{0, 0, i & 1 ? -3 : 0}, {1, 1, 1}, {0, 0, 1}, 0};
         View view = {.light_count = 1, .lights = &light};
         MaterialSample m = material(i & 2 ? 0.0f : 1.0f, 0);
         Surface surface = {{0, 0, i & 4 ? 0 : -3}, {0, 0, i & 8 ? 0 : 1}, m, false, false};
@@ -127,7 +147,7 @@ START_TEST(test_guards)
             ck_assert_msg(isfinite(rgb[k]) && rgb[k] >= 0, "case %d: %g", i, rgb[k]);
     }
     /* Roughness 0 means SHADING_ROUGHNESS_MIN. */
-    ViewLight light = {{1, 0, 0}, {1, 1, 1}, {0, 0, 1}};
+    ViewLight light = {{1, 0, 0}, {1, 1, 1}, {0, 0, 1}, 0};
     View view = {.light_count = 1, .lights = &light};
     MaterialSample smooth = material(0, 0), least = material(SHADING_ROUGHNESS_MIN, 0);
     Surface a = {{0, 0, -3}, {0.1, 0, 1}, smooth, false, false},
@@ -159,6 +179,7 @@ int main(void)
     tcase_add_test(tests, test_bisecting_normal);
     tcase_add_test(tests, test_unlit);
     tcase_add_test(tests, test_back_light);
+    tcase_add_test(tests, test_range);
     tcase_add_test(tests, test_guards);
     tcase_add_test(tests, test_display);
     suite_add_tcase(suite, tests);

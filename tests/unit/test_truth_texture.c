@@ -383,8 +383,8 @@ START_TEST(test_perspective)
     stage->materials[0].metallic = 1;
     stage->scene.texture_count = 2;
     stage->scene.light_count = 1;
-    stage->lights[0] = (Light){{0.5, 1.25, -1}, {2, 3, 4}, {0, 0, 1}};
-    ViewLight light = {{0.5f, 1.25f, -1}, {2, 3, 4}, {0, 0, 1}};
+    stage->lights[0] = (Light){{0.5, 1.25, -1}, {2, 3, 4}, {0, 0, 1}, 0};
+    ViewLight light = {{0.5f, 1.25f, -1}, {2, 3, 4}, {0, 0, 1}, 0};
     View view = {.light_count = 1, .lights = &light, .ambient = {1, 1, 1}};
     Frame frame;
     const RenderDesc desc = {.width = 96, .height = 96};

@@ -187,6 +187,32 @@ START_TEST(test_lights)
 }
 END_TEST
 
+/* Never denormal, nor so large that a product with a squared distance overflows. */
+START_TEST(test_ranges)
+{
+    static const struct {
+        float range, expected;
+    } rows[] = {{0, 0},
+                {1, 1},
+                {0.5f, 4},
+                {3, 1.0f / 9.0f},
+                {0.01f, 1e4f},
+                {1e-3f, 2e4f},
+                {1e-45f, 2e4f},
+                {0x1p62f, 0x1p-124f},
+                {0x1p63f, 0x1p-126f},
+                {0x1p64f, 0},
+                {3e38f, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        lights[0].range = rows[i].range;
+        View view = build((RenderDesc){.width = 64, .height = 64});
+        ck_assert_float_bits(view.lights[0].inverse_range2, rows[i].expected);
+        ck_assert_float_bits(view.lights[1].inverse_range2, 0.0f);
+        view_free(&view);
+    }
+}
+END_TEST
+
 START_TEST(test_limits)
 {
     static const RenderDesc bad[] = {
@@ -246,6 +272,7 @@ int main(void)
     tcase_add_test(tcase, test_normal_matrix_scale);
     tcase_add_test(tcase, test_cull);
     tcase_add_test(tcase, test_lights);
+    tcase_add_test(tcase, test_ranges);
     tcase_add_test(tcase, test_limits);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);

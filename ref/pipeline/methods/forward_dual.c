@@ -83,9 +83,7 @@ static void geometry_tile(Stage *stage, uint32_t tile)
 static void clear_targets(Stage *stage)
 {
     ForwardDual *dual = stage->method;
-    Image previous = dual->previous_front;
-    dual->previous_front = dual->front;
-    dual->front = previous;
+    image_swap(&dual->front, &dual->previous_front);
     minmax_clear_zero(&dual->front);
     minmax_clear_zero(&dual->back);
 }

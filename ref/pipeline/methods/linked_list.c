@@ -245,7 +245,7 @@ static Result blend_layer(Stage *stage)
 static Result layers(Stage *stage)
 {
     Lists *lists = stage->method;
-    int limit = stage->pass->desc->passes ? stage->pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(stage->pass->desc);
     for (lists->peel = 0; lists->peel < limit; lists->peel++) {
         uint64_t drawn;
         Result result = draw_layer(stage, &drawn);

@@ -199,9 +199,7 @@ static Result run_peel(Stage *stage)
 {
     MinMax *minmax = minmax_of(stage);
     const MinMaxMethod *method = minmax->method;
-    Image previous = minmax->previous;
-    minmax->previous = minmax->current;
-    minmax->current = previous;
+    image_swap(&minmax->current, &minmax->previous);
     clear_limits(&minmax->current);
     clear_ids(&minmax->front_id);
     clear_ids(&minmax->back_id);
@@ -218,7 +216,7 @@ Result minmax_peels(Stage *stage)
 {
     MinMax *minmax = minmax_of(stage);
     Frame *frame = stage->frame;
-    int limit = stage->pass->desc->passes ? stage->pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(stage->pass->desc);
     clear_limits(&minmax->current);
     Result result = stage_run(stage, first_tile);
     if (result == RESULT_OK)

@@ -92,7 +92,7 @@ static Result draw_peel(Stage *stage, bool *stop)
 static Result peels(Stage *stage)
 {
     Peel *peel = stage->method;
-    int limit = stage->pass->desc->passes ? stage->pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(stage->pass->desc);
     for (peel->peel = 0; peel->peel < limit; peel->peel++) {
         bool stop;
         Result result = draw_peel(stage, &stop);
@@ -106,9 +106,7 @@ static Result peels(Stage *stage)
             result = stage_put(stage, peel->peel, "accum", &stage->accum);
         if (result != RESULT_OK)
             return result;
-        Image current = peel->layer.depth;
-        peel->layer.depth = peel->previous_depth;
-        peel->previous_depth = current;
+        image_swap(&peel->layer.depth, &peel->previous_depth);
         stage->frame->peels = peel->peel + 1;
     }
     stage->frame->geometry_passes = pass_geometry_passes(stage->pass, stage->frame->peels);

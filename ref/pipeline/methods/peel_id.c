@@ -140,13 +140,6 @@ static Result draw_peel(Stage *stage, uint64_t *drawn)
     return result;
 }
 
-static void swap(Image *a, Image *b)
-{
-    Image image = *a;
-    *a = *b;
-    *b = image;
-}
-
 /* Traces and blends the layer that was drawn. */
 static Result blend_peel(Stage *stage)
 {
@@ -158,8 +151,8 @@ static Result blend_peel(Stage *stage)
         result = stage_light(stage, &state->layer, true);
     if (result == RESULT_OK)
         result = stage_put(stage, state->peel, "accum", &stage->accum);
-    swap(&state->layer.depth, &state->previous_depth);
-    swap(&state->layer.primitive, &state->previous_id);
+    image_swap(&state->layer.depth, &state->previous_depth);
+    image_swap(&state->layer.primitive, &state->previous_id);
     return result;
 }
 
@@ -167,7 +160,7 @@ static Result peels(Stage *stage)
 {
     PeelId *state = stage->method;
     Frame *frame = stage->frame;
-    int limit = stage->pass->desc->passes ? stage->pass->desc->passes : PASSES_MAX;
+    int limit = render_desc_pass_limit(stage->pass->desc);
     for (state->peel = 0; state->peel < limit; state->peel++) {
         uint64_t drawn;
         Result result = draw_peel(stage, &drawn);
