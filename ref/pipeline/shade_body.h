@@ -273,20 +273,25 @@ static inline Lanes shade_threshold(const View *view, const Surface *surface)
     return lanes_sub(lanes_dot3(surface->normal, surface->position), margin);
 }
 
-/* Whether the light is neither behind the surface nor out of its range in some lane. */
-static inline bool shade_reaches(const Surface *surface, const ViewLight *light, Lanes threshold)
+/* Whether the light is before the surface in some lane. */
+static inline bool shade_faces(const Surface *surface, const ViewLight *light, Lanes threshold)
 {
     Lanes position[3];
     for (int i = 0; i < 3; i++)
         position[i] = lanes_all(light->position[i]);
-    uint32_t dark = lanes_mask_bits(lanes_less(lanes_dot3(surface->normal, position), threshold));
-    if (light->inverse_range2 > 0.0f && dark != LANES_FULL) {
-        Lanes to_light[3];
-        shade_to_light(surface, light, to_light);
-        LanesMask lit = lanes_less(lanes_all(0.0f), shade_window(light, shade_distance2(to_light)));
-        dark |= ~lanes_mask_bits(lit) & LANES_FULL;
-    }
-    return dark != LANES_FULL;
+    LanesMask behind = lanes_less(lanes_dot3(surface->normal, position), threshold);
+    return lanes_mask_bits(behind) != LANES_FULL;
+}
+
+/* Whether some lane is within the light's range. */
+static inline bool shade_reaches(const Surface *surface, const ViewLight *light)
+{
+    if (!(light->inverse_range2 > 0.0f))
+        return true;
+    Lanes to_light[3];
+    shade_to_light(surface, light, to_light);
+    Lanes window = shade_window(light, shade_distance2(to_light));
+    return lanes_mask_bits(lanes_less(lanes_all(0.0f), window)) != 0;
 }
 
 /* The next SHADE_LIST lights from `first` that may add something, to `out`. Returns how many. */
@@ -295,10 +300,16 @@ static inline int shade_select(const View *view, const Surface *surface, bool sk
 {
     size_t end = view->light_count - first < SHADE_LIST ? view->light_count : first + SHADE_LIST;
     Lanes threshold = shade_threshold(view, surface);
-    int count = 0;
+    int facing = 0, count = 0;
     for (size_t i = first; i < end; i++) {
-        out[count] = &view->lights[i];
-        count += !skip || shade_reaches(surface, &view->lights[i], threshold);
+        out[facing] = &view->lights[i];
+        facing += !skip || shade_faces(surface, &view->lights[i], threshold);
+    }
+    if (!skip || !view->ranged)
+        return facing;
+    for (int i = 0; i < facing; i++) {
+        out[count] = out[i];
+        count += shade_reaches(surface, out[i]);
     }
     return count;
 }

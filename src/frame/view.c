@@ -203,6 +203,7 @@ static void add_lights(const Scene *scene, const RenderDesc *desc, const Matrix 
     double reach = 0.0;
     for (size_t i = 0; i < out->light_count; i++) {
         out->lights[i] = make_light(&scene->lights[i], &world_to_view);
+        out->ranged = out->ranged || out->lights[i].inverse_range2 > 0.0f;
         double distance = light_reach(&out->lights[i]);
         reach = reach >= distance ? reach : distance; /* NaN stays */
     }

@@ -47,6 +47,7 @@ typedef struct View {
     /* No light is further from the eye; 0 where that is not known, beyond 2^47, or a light is not
      * what scene_validate wants, so that shading it may overflow. */
     float light_reach;
+    bool ranged; /* some light has a range */
     float ambient[3], background[3];
 } View;
 

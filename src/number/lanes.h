@@ -147,13 +147,11 @@ static inline Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
 #if LANES == 1
     return op_fma(a, b, c);
 #elif LANES == 4
-    float x[4], y[4], z[4];
-    lanes_store(x, a);
-    lanes_store(y, b);
-    lanes_store(z, c);
-    for (int i = 0; i < 4; i++)
-        z[i] = op_fma(x[i], y[i], z[i]);
-    return lanes_load(z);
+    __m128d low = op_fma_odd_pair(_mm_cvtps_pd(a), _mm_cvtps_pd(b), _mm_cvtps_pd(c));
+    __m128d high =
+        op_fma_odd_pair(_mm_cvtps_pd(_mm_movehl_ps(a, a)), _mm_cvtps_pd(_mm_movehl_ps(b, b)),
+                        _mm_cvtps_pd(_mm_movehl_ps(c, c)));
+    return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
 #else
     return LANES_CALL(fmadd_ps)(a, b, c);
 #endif

@@ -178,6 +178,28 @@ static inline float op_fma(float a, float b, float c)
 #endif
 }
 
+#if OP_HARDWARE_FLUSH
+/* What op_fma emulates, of two triples of floats as doubles: the sum rounded to odd. */
+static inline __m128d op_fma_odd_pair(__m128d a, __m128d b, __m128d c)
+{
+    const __m128d zero = _mm_setzero_pd();
+    const __m128i one = _mm_set_epi32(0, 1, 0, 1);
+    __m128d product = _mm_mul_pd(a, b), sum = _mm_add_pd(product, c);
+    __m128d recovered = _mm_sub_pd(sum, product);
+    __m128d error =
+        _mm_add_pd(_mm_sub_pd(product, _mm_sub_pd(sum, recovered)), _mm_sub_pd(c, recovered));
+    __m128i inexact =
+        _mm_castpd_si128(_mm_and_pd(_mm_cmpneq_pd(error, zero), _mm_cmpord_pd(error, error)));
+    __m128i bits = _mm_castpd_si128(sum);
+    __m128i even = _mm_sub_epi64(_mm_and_si128(bits, one), one); /* all ones, or 0 */
+    __m128i opposite =
+        _mm_castpd_si128(_mm_xor_pd(_mm_cmpgt_pd(error, zero), _mm_cmpgt_pd(sum, zero)));
+    __m128i step = _mm_or_si128(opposite, one); /* 1, or −1 */
+    step = _mm_and_si128(step, _mm_and_si128(even, inexact));
+    return _mm_castsi128_pd(_mm_add_epi64(bits, step));
+}
+#endif
+
 /* What Mesa's fixed-function code computes where it asks LLVM for a fused or separate a·b + c:
  * one rounding where the driver's processor has FMA, two where it has not. */
 static inline float op_muladd(bool fused, float a, float b, float c)

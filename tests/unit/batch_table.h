@@ -9,6 +9,7 @@
 
 typedef struct BatchTable {
     int lanes;
+    void (*fma)(const float *a, const float *b, const float *c, float *out);
     void (*exp2)(bool fused, const float *x, float *out);
     void (*log2)(bool fused, const float *x, float *out);
     void (*pow)(bool fused, const float *x, const float *y, float *out);
@@ -30,6 +31,10 @@ extern const BatchTable batch_scalar, batch_sse2, batch_avx2, batch_avx512;
 #include "ref/pipeline/resolve_body.h"
 #include "ref/pipeline/shade_body.h"
 
+static void table_fma(const float *a, const float *b, const float *c, float *out)
+{
+    lanes_store(out, lanes_fma(lanes_load(a), lanes_load(b), lanes_load(c)));
+}
 static void table_exp2(bool fused, const float *x, float *out)
 {
     lanes_store(out, lanes_exp2(fused, lanes_load(x)));
@@ -94,7 +99,7 @@ static void table_resolve(const View *view, bool fused, const float (*accum)[4],
             final[lane][i] = out[i][lane];
 }
 
-const BatchTable BATCH_TABLE = {LANES,       table_exp2,   table_log2,   table_pow,
-                                table_shade, table_select, table_resolve};
+const BatchTable BATCH_TABLE = {LANES,     table_fma,   table_exp2,   table_log2,
+                                table_pow, table_shade, table_select, table_resolve};
 
 #endif

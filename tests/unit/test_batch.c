@@ -1,6 +1,6 @@
-/* number/lanes_pow.h, ref/pipeline/shade_body.h and resolve_body.h: every width has the bits of the
- * scalar definition, and leaving lights out changes none. Bits of a NaN do not count: they are made
- * canonical where stored. */
+/* number/lanes.h and lanes_pow.h, ref/pipeline/shade_body.h and resolve_body.h: every width has the
+ * bits of the scalar definition, and leaving lights out changes none. Bits of a NaN do not count:
+ * they are made canonical where stored. */
 #include "testing.h"
 
 #include "base/random.h"
@@ -98,6 +98,47 @@ START_TEST(test_functions)
 }
 END_TEST
 
+/* Any bits, few exponents, so that roundings matter, and hostile. */
+static float pick_factor(Random *random)
+{
+    uint64_t bits = random_bits(random);
+    if (bits % 16 == 0)
+        return pick_hostile(random);
+    uint32_t word = (uint32_t)(bits >> 32);
+    return op_from_bits(bits % 4 ? (word & 0x81ffffff) | 0x3e000000 : word);
+}
+
+START_TEST(test_fma)
+{
+    const BatchTable *table[4];
+    int count = tables(table);
+    Random random = random_seed(8);
+    uint32_t saved = op_enter();
+    for (int number = 0; number < 50 * CASES; number++) {
+        float x[3][WIDEST], got[WIDEST];
+        for (int i = 0; i < 3 * WIDEST; i++)
+            x[i % 3][i / 3] = pick_factor(&random);
+        for (int i = 0; i < WIDEST && number % 2; i++) /* the sum cancels, or nearly */
+            x[2][i] = op_neg(op_mul(x[0][i], x[1][i]));
+        /* 1 + 2^-24 and a little: in double one step above a tie of floats, and rounded up. */
+        x[0][number % WIDEST] = number % 2 ? -65281.0f : 65281.0f;
+        x[1][number % WIDEST] = 257.0f * 0x1p-24f;
+        x[2][number % WIDEST] = (number % 2 ? -1.0f : 1.0f) * (0x1p-52f - 0x1p-75f);
+        for (int k = 0; k < count; k++)
+            for (int i = 0; i < WIDEST; i++) {
+                if (i % table[k]->lanes == 0)
+                    table[k]->fma(x[0] + i, x[1] + i, x[2] + i, got + i);
+                float expected = op_fma(x[0][i], x[1][i], x[2][i]);
+                if (!same(got[i], expected))
+                    ck_abort_msg("%d lanes, fma(%a, %a, %a): got %a, expected %a", table[k]->lanes,
+                                 (double)x[0][i], (double)x[1][i], (double)x[2][i], (double)got[i],
+                                 (double)expected);
+            }
+    }
+    op_leave(saved);
+}
+END_TEST
+
 /* ---- lighting ---- */
 
 typedef struct Case {
@@ -150,6 +191,8 @@ static void make_light(Random *random, const Texel *texel, ViewLight *out)
                                         {1e-8f, 0, 0},     {0, 1, 0}, {0, 0, 3e38f}};
     bool bright = random_bits(random) % 16 == 0, grazing = random_bits(random) % 4 == 0;
     memcpy(out->attenuation, falloffs[random_bits(random) % 6], sizeof out->attenuation);
+    out->inverse_range2 =
+        random_bits(random) % 2 ? (float)exp2(random_range(random, -10, 2)) : 0.0f;
     float along[3], height = 0;
     for (int i = 0; i < 3; i++) {
         out->color[i] = bright ? 1e12f : (float)random_range(random, 0, 10);
@@ -196,14 +239,18 @@ static void make_case(Random *random, Case *out)
     *out = (Case){
         .view = {.light_count = random_bits(random) % (LIGHTS + 1), .ambient = {0.25f, 0, 1}}};
     out->view.lights = out->lights;
+    out->view.ranged = random_bits(random) % 2;
     out->form = (ShadeForm){
         .model = random_bits(random) % 32 ? SHADING_GGX : SHADING_PHONG,
         .ggx = random_bits(random) % 2 ? GGX_STABLE : GGX_SOURCE,
         .back_light = random_bits(random) % 4 == 0,
     };
     make_texels(random, out->texels);
-    for (size_t i = 0; i < out->view.light_count; i++)
+    for (size_t i = 0; i < out->view.light_count; i++) {
         make_light(random, &out->texels[0], &out->lights[i]);
+        if (!out->view.ranged)
+            out->lights[i].inverse_range2 = 0;
+    }
     if (random_bits(random) % 4 == 0)
         scale(out, (int)(random_bits(random) % 120) - 70);
     set_reach(out);
@@ -254,35 +301,43 @@ START_TEST(test_shade)
 }
 END_TEST
 
-/* Eight lights behind a plane, eight before it: the first are skipped, unless something speaks
- * against it. */
+/* Eight lights behind a plane, eight before it, 1 to 8 away: the first are skipped, unless
+ * something speaks against it, and those too far. */
 START_TEST(test_select)
 {
     const BatchTable *table[4];
     int count = tables(table);
     static const struct {
         const char *name;
-        float normal_z, position_x, diffuse, metallic, reach;
+        float normal_z, position_x, diffuse, metallic, reach, range;
         bool back_light;
         int lights;
     } rows[] = {
-        {"plane", 1, 0, 1, 0, 20, false, 8},
-        {"back light", 1, 0, 1, 0, 20, true, 16},
-        {"reach not known", 1, 0, 1, 0, 0, false, 16},
-        {"long normal", 1.000001f, 0, 1, 0, 20, false, 16},
-        {"no normal", NAN, 0, 1, 0, 20, false, 16},
-        {"far away", 1, 0x1p48f, 1, 0, 20, false, 16},
-        {"colour above 1", 1, 0, 1.0000002f, 0, 20, false, 16},
-        {"colour below 0", 1, 0, -0.1f, 0, 20, false, 16},
-        {"metallic above 1", 1, 0, 1, 1.5f, 20, false, 16},
-        {"no metallic", 1, 0, 1, NAN, 20, false, 16},
+        {"plane", 1, 0, 1, 0, 20, 0, false, 8},
+        {"range", 1, 0, 1, 0, 20, 3.5f, false, 3},
+        {"range, back light", 1, 0, 1, 0, 20, 3.5f, true, 16},
+        {"back light", 1, 0, 1, 0, 20, 0, true, 16},
+        {"reach not known", 1, 0, 1, 0, 0, 0, false, 16},
+        {"long normal", 1.000001f, 0, 1, 0, 20, 0, false, 16},
+        {"no normal", NAN, 0, 1, 0, 20, 0, false, 16},
+        {"far away", 1, 0x1p48f, 1, 0, 20, 0, false, 16},
+        {"colour above 1", 1, 0, 1.0000002f, 0, 20, 0, false, 16},
+        {"colour below 0", 1, 0, -0.1f, 0, 20, 0, false, 16},
+        {"metallic above 1", 1, 0, 1, 1.5f, 20, 0, false, 16},
+        {"no metallic", 1, 0, 1, NAN, 20, 0, false, 16},
     };
     for (size_t row = 0; row < sizeof rows / sizeof *rows; row++)
         for (int i = 0; i < count; i++) {
-            ViewLight lights[16] = {{{0}, {0}, {0}}};
-            for (int k = 0; k < 16; k++)
-                lights[k].position[2] = k < 8 ? -6.0f - (float)k : -4.0f + (float)k;
-            View view = {.light_count = 16, .lights = lights, .light_reach = rows[row].reach};
+            ViewLight lights[16] = {{.position = {0}}};
+            for (int k = 0; k < 16; k++) {
+                lights[k].position[2] = k < 8 ? -6.0f - (float)k : -12.0f + (float)k;
+                if (rows[row].range > 0)
+                    lights[k].inverse_range2 = 1 / (rows[row].range * rows[row].range);
+            }
+            View view = {.light_count = 16,
+                         .lights = lights,
+                         .light_reach = rows[row].reach,
+                         .ranged = rows[row].range > 0};
             ShadeForm form = {.back_light = rows[row].back_light};
             Texel texels[WIDEST];
             for (int lane = 0; lane < WIDEST; lane++)
@@ -351,6 +406,7 @@ int main(void)
     Suite *suite = suite_create("batch");
     TCase *tests = tcase_create("batch");
     tcase_set_timeout(tests, 1800);
+    tcase_add_test(tests, test_fma);
     tcase_add_test(tests, test_functions);
     tcase_add_test(tests, test_shade);
     tcase_add_test(tests, test_select);

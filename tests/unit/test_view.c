@@ -187,6 +187,36 @@ START_TEST(test_lights)
 }
 END_TEST
 
+/* Of lights 12, 13 and x from the eye; 0 where a light may overflow or the furthest is too far. */
+START_TEST(test_reach)
+{
+    static const struct {
+        double x;
+        float color, constant, expected;
+    } rows[] = {{5, 1, 1, 13},       {-20, 1e12f, 1e-8f, 20}, {20, 1.01e12f, 1, 0},
+                {20, -1, 1, 0},      {20, NAN, 1, 0},         {20, 1, 0.9e-8f, 0},
+                {20, 1, -1, 0},      {20, 1, NAN, 0},         {0x1p46, 1, 1, 0x1p46f},
+                {0x1.1p47, 1, 1, 0}, {NAN, 1, 1, 0},          {INFINITY, 1, 1, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        float color = rows[i].color;
+        lights[0] = (Light){.position = {0, 12, 0}, .attenuation = {1, 0, 0}};
+        lights[1] = (Light){.position = {3, -4, 12}, .attenuation = {1, 0, 0}};
+        lights[2] = (Light){.position = {rows[i].x, 0, 0},
+                            .color = {1, 1, color},
+                            .attenuation = {rows[i].constant, 0, 0}};
+        View view = build((RenderDesc){.width = 64, .height = 64});
+        ck_assert_msg(view.light_reach >= rows[i].expected &&
+                          view.light_reach <= rows[i].expected * 1.00001f,
+                      "row %zu: reach %g, expected %g", i, (double)view.light_reach,
+                      (double)rows[i].expected);
+        view_free(&view);
+    }
+    View none = build((RenderDesc){.width = 64, .height = 64, .lights = -1});
+    ck_assert_float_bits(none.light_reach, 0.0f);
+    view_free(&none);
+}
+END_TEST
+
 /* Never denormal, nor so large that a product with a squared distance overflows. */
 START_TEST(test_ranges)
 {
@@ -208,6 +238,7 @@ START_TEST(test_ranges)
         View view = build((RenderDesc){.width = 64, .height = 64});
         ck_assert_float_bits(view.lights[0].inverse_range2, rows[i].expected);
         ck_assert_float_bits(view.lights[1].inverse_range2, 0.0f);
+        ck_assert(view.ranged == (rows[i].expected > 0));
         view_free(&view);
     }
 }
@@ -272,6 +303,7 @@ int main(void)
     tcase_add_test(tcase, test_normal_matrix_scale);
     tcase_add_test(tcase, test_cull);
     tcase_add_test(tcase, test_lights);
+    tcase_add_test(tcase, test_reach);
     tcase_add_test(tcase, test_ranges);
     tcase_add_test(tcase, test_limits);
     suite_add_tcase(suite, tcase);
