@@ -5,7 +5,7 @@
 #ifndef PEEL_GL_PASSES_H
 #define PEEL_GL_PASSES_H
 
-#include "frame/frame.h"
+#include "gl_renderer.h"
 #include "targets.h"
 #include "upload.h"
 
@@ -15,7 +15,8 @@ typedef struct Passes {
     const RenderDesc *desc;
     const View *view;
     TraceSink *trace; /* may be NULL */
-    void *pixels;     /* scratch for read-back, 16 bytes a pixel; NULL without a trace */
+    GlOptions options;
+    void *pixels; /* scratch for read-back, 16 bytes a pixel; NULL without a trace */
     Targets targets;
     Meshes meshes;
     LightBuffer lights;
@@ -24,11 +25,13 @@ typedef struct Passes {
     GLuint samples;                                                  /* query */
 } Passes;
 
-/* Uploads the scene and builds programs and buffers; scene, desc, view and trace must outlive
- * *out. On failure *out is empty. */
-Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc, const View *view,
-                     TraceSink *trace, Passes *out);
+/* Uploads the scene and builds programs and buffers. in: context to trace, which must outlive *out,
+ * and options; the rest is 0. On failure *out is empty. */
+Result passes_create(const Passes *in, Passes *out);
 void passes_destroy(Passes *passes);
+
+/* Sets what the passes of a frame expect of the driver's state; frames may have changed it. */
+void passes_begin(const Passes *passes);
 
 /* ---- programs ---- */
 
@@ -60,7 +63,8 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
 void passes_draw_list(const Passes *passes, GLuint program, bool transparent);
 /* Makes func, mirrored where desc->depth_range is, the depth function: at first desc's own is. */
 void passes_depth_test(const RenderDesc *desc, DepthFunc func);
-/* As passes_draw_list, with the depth test on, counting the fragments that passed. */
+/* As passes_draw_list, with the depth test on, counting the fragments that passed; with samples
+ * NULL neither counts nor waits for the driver. */
 Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
                            uint64_t *samples);
 /* One draw; its index range in triangles, 0 and UINT32_MAX for all. */

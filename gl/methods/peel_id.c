@@ -54,9 +54,11 @@ static Result build_programs(PeelId *state)
     return result;
 }
 
-static Result make(PeelId *state)
+static Result create(Passes *passes, void *into)
 {
-    Targets *targets = &state->passes->targets;
+    PeelId *state = into;
+    Targets *targets = &passes->targets;
+    state->passes = passes;
     Result result = build_programs(state);
     for (int i = 0; i < 2 && result == RESULT_OK; i++) {
         result = targets_layer(targets, i ? &state->layers[0] : NULL, &state->layers[i]);
@@ -68,13 +70,14 @@ static Result make(PeelId *state)
             result = targets_framebuffer(1, &state->rank[i], 0, &state->rank_buffer[i]);
     }
     if (result == RESULT_OK && targets->depth_format == FORMAT_D24 &&
-        state->passes->desc->depth_range == DEPTH_RANGE_REVERSED)
+        passes->desc->depth_range == DEPTH_RANGE_REVERSED)
         result = targets_texture(targets, FORMAT_R32UI, &state->previous_code);
     return result;
 }
 
-static void destroy(PeelId *state)
+static void destroy(void *of)
 {
+    PeelId *state = of;
     for (int i = 0; i < 2; i++) {
         gl.DeleteProgram(state->depth[i]);
         gl.DeleteProgram(state->select[i]);
@@ -91,7 +94,7 @@ static void destroy(PeelId *state)
 /* ---- the three passes ---- */
 
 /* The transparent draws to framebuffer, depth test on. */
-static void draw(const PeelId *state, GLuint program, GLuint framebuffer)
+static void draw_triangles(const PeelId *state, GLuint program, GLuint framebuffer)
 {
     const View *view = state->passes->view;
     progress_add();
@@ -123,8 +126,8 @@ static Result bind_previous(const PeelId *state, int peel)
     return result;
 }
 
-/* *samples: fragments that passed, 0 when nothing is left to peel. Whichever function desc has:
- * fragments of one depth are told apart later. */
+/* *samples: fragments that passed, 0 when nothing is left to peel; NULL: not counted. Whichever
+ * function desc has: fragments of one depth are told apart later. */
 static Result draw_depth(PeelId *state, int peel, uint64_t *samples)
 {
     const Passes *passes = state->passes;
@@ -134,8 +137,11 @@ static Result draw_depth(PeelId *state, int peel, uint64_t *samples)
         return result;
     passes_clear_layer(passes, &state->layers[peel & 1]);
     passes_depth_test(passes->desc, DEPTH_LEQUAL);
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
-    draw(state, state->depth[peel > 0], state->depth_buffer[peel & 1]);
+    if (samples)
+        gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    draw_triangles(state, state->depth[peel > 0], state->depth_buffer[peel & 1]);
+    if (!samples)
+        return RESULT_OK;
     gl.EndQuery(GL_SAMPLES_PASSED);
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
     *samples = count;
@@ -149,10 +155,10 @@ static void draw_selected(PeelId *state, int peel)
     gl.DepthFunc(GL_EQUAL);
     gl.ClearNamedFramebufferuiv(state->rank_buffer[at], GL_COLOR, 0, none);
     gl.BindImageTexture(0, state->rank[at], 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-    draw(state, state->select[peel > 0], state->depth_buffer[at]);
+    draw_triangles(state, state->select[peel > 0], state->depth_buffer[at]);
     gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
     gl.BindTextureUnit(5, state->rank[at]);
-    draw(state, state->gbuffer, state->layers[at].buffer);
+    draw_triangles(state, state->gbuffer, state->layers[at].buffer);
     passes_depth_test(state->passes->desc, state->passes->desc->depth_func);
 }
 
@@ -191,9 +197,10 @@ static Result trace_peel(const PeelId *state, int peel)
 /* One peel. *more: false when nothing was left. */
 static Result run_peel(PeelId *state, int peel, bool *more)
 {
+    const bool every = state->passes->options.every_pass;
     uint64_t samples = 0;
-    Result result = draw_depth(state, peel, &samples);
-    *more = result == RESULT_OK && samples > 0;
+    Result result = draw_depth(state, peel, every ? NULL : &samples);
+    *more = result == RESULT_OK && (samples > 0 || every);
     if (!*more)
         return result;
     draw_selected(state, peel);
@@ -202,23 +209,17 @@ static Result run_peel(PeelId *state, int peel, bool *more)
     return state->passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-static Result run(PeelId *state)
+static Result draw(void *of, Frame *out)
 {
+    PeelId *state = of;
     Passes *passes = state->passes;
     int most = passes->desc->passes ? passes->desc->passes : PASSES_MAX;
     bool more = true;
+    state->frame = out;
     Result result = passes_opaque(passes);
     for (int peel = 0; peel < most && more && result == RESULT_OK; peel++)
         result = run_peel(state, peel, &more);
     return result == RESULT_OK ? passes_finish(passes, state->frame->peels) : result;
 }
 
-Result gl_peel_id(Passes *passes, Frame *out)
-{
-    PeelId state = {.passes = passes, .frame = out};
-    Result result = make(&state);
-    if (result == RESULT_OK)
-        result = run(&state);
-    destroy(&state);
-    return result;
-}
+const GlMethod gl_peel_id = {sizeof(PeelId), create, draw, destroy};
