@@ -97,6 +97,18 @@ bool options_real(const char *text, double low, double high, double *out)
     return true;
 }
 
+error_t options_list(const char *name, const char *text,
+                     error_t (*item)(const char *part, void *context), void *context)
+{
+    char *copy = strdup(text), *rest = copy, *part;
+    error_t error = copy ? 0 : options_error("%s: out of memory", name);
+    while (error == 0 && (part = strsep(&rest, ",")))
+        error = *part ? item(part, context)
+                      : options_error("%s '%s': expected values with commas between", name, text);
+    free(copy);
+    return error;
+}
+
 bool options_has_extension(const char *path, const char *extension)
 {
     size_t length = strlen(path), wanted = strlen(extension);
