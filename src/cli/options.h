@@ -92,6 +92,12 @@ Result options_check_fma(const RenderOptions *options);
 /* Whether a file can be made or replaced at path (NULL is fine): found out before the work. */
 Result options_check_output(const char *path);
 
+/* Makes a directory, and finds it writable, before minutes of work and not after. */
+Result options_open_directory(const char *path);
+
+/* The command as a shell would take it again; NULL when memory is exhausted. The caller frees. */
+char *options_command_line(int argc, char **argv);
+
 /* Prints "peel: <message>" and returns EXIT_BAD_INPUT. */
 int options_fail(Result result);
 
