@@ -138,6 +138,14 @@ static bool ends_differ(const AxisPlot *plot)
     return !is_held(plot, end_of(report, 0), 1) && end_of(report, 1)->format == 0;
 }
 
+/* Whether the two ends have other values of it; of triangles: other scenes. */
+static bool differs(const BenchReport *report, BenchAxis axis)
+{
+    const BenchRow *a = end_of(report, 0), *b = end_of(report, 1);
+    double x = value_of(report, a, axis), y = value_of(report, b, axis);
+    return axis == BENCH_TRIANGLES ? a->scene != b->scene : x != y && !(isnan(x) && isnan(y));
+}
+
 /* "gl, peel, 16 lights": what distinguishes this curve. */
 static void name_curve(const AxisPlot *plot, int renderer, MethodId method, int end, char *text,
                        size_t size)
@@ -148,11 +156,10 @@ static void name_curve(const AxisPlot *plot, int renderer, MethodId method, int 
         length += snprintf(text + length, size - (size_t)length, ", %s", method_info(method)->name);
     for (int other = 0; other < BENCH_AXES && ends_differ(plot); other++) {
         char label[80];
-        const BenchRow *held = end_of(report, end), *across = end_of(report, 1 - end);
-        label_of(report, held, (BenchAxis)other, label, sizeof label);
-        if (other != (int)plot->axis &&
-            value_of(report, held, (BenchAxis)other) != value_of(report, across, (BenchAxis)other))
-            length += snprintf(text + length, size - (size_t)length, ", %s", label);
+        if (other == (int)plot->axis || !differs(report, (BenchAxis)other))
+            continue;
+        label_of(report, end_of(report, end), (BenchAxis)other, label, sizeof label);
+        length += snprintf(text + length, size - (size_t)length, ", %s", label);
     }
 }
 
@@ -176,7 +183,7 @@ static int put_curve(FILE *script, const AxisPlot *plot, int renderer, MethodId 
 static void put_axis(FILE *script, const AxisPlot *plot)
 {
     const BenchReport *report = plot->report;
-    Range range = {INFINITY, 0.0};
+    Range range = {INFINITY, 0.0}, values = {INFINITY, 0.0};
     fprintf(script, "set xtics nomirror (");
     for (size_t i = 0; i < report->count; i++) {
         const BenchRow *row = &report->rows[i];
@@ -187,10 +194,13 @@ static void put_axis(FILE *script, const AxisPlot *plot)
             fprintf(script, "%s'%s' %.9g", i ? ", " : "", label, value);
         else
             fprintf(script, "%s'%.0f' %.9g", i ? ", " : "", value, value);
+        extend(&values, value);
         if (row->cpu_ms > 0.0)
             extend(&range, row->cpu_ms);
     }
-    fprintf(script, ")\nset logscale x\nset offsets graph 0.05, graph 0.05, 0, 0\n");
+    double room = pow(values.high / values.low, 0.08);
+    fprintf(script, ")\nset logscale x\nset xrange [%.9g:%.9g]\n", values.low / room,
+            values.high * room);
     if (range.high > 0.0)
         put_scale(script, "y", range);
 }
@@ -260,19 +270,45 @@ static int put_points(FILE *script, const ErrorPlot *plot, int renderer, Range *
     return points;
 }
 
-/* The front, and what each of its points is. */
-static int put_front(FILE *script, const ErrorPlot *plot)
+/* Whether a label beside b would touch that of a. */
+static bool is_near(const BenchRow *a, const BenchRow *b, Range times, Range errors)
 {
-    int points = 0;
+    double x = fabs(log(a->cpu_ms / b->cpu_ms)) / log(4.0 * times.high / times.low);
+    double y = fabs(log(a->rmse / b->rmse)) / log(4.0 * errors.high / errors.low);
+    return x < 0.3 && y < 0.045;
+}
+
+/* What a row is, as far as rows of the plot may differ. */
+static void put_label(FILE *script, const BenchPlan *plan, const BenchRow *row)
+{
+    char passes[REPORT_BENCH_PASSES];
+    fprintf(script, " \"");
+    if (plan->method_count > 1)
+        fprintf(script, "%s ", method_info(row->method)->name);
+    fprintf(script, "%s%s", report_bench_passes(row->passes, passes),
+            row->passes == 1 ? " pass" : " passes");
+    if (plan->format_count > 1)
+        fprintf(script, " %s", plan->formats[row->format].name);
+    fprintf(script, "\"");
+}
+
+/* The front, and what its points are where there is room to say it. */
+static int put_front(FILE *script, const ErrorPlot *plot, Range times, Range errors)
+{
+    const BenchRow *labelled[BENCH_AXIS_MAX];
+    int points = 0, labels = 0;
     fprintf(script, "$front << END\n");
     for (size_t i = plot->first; i < plot->first + plot->count; i++) {
         const BenchRow *row = &plot->report->rows[i];
-        char passes[REPORT_BENCH_PASSES];
+        bool room = labels < BENCH_AXIS_MAX;
         if (!row->pareto || !has_place(row))
             continue;
-        fprintf(script, "%.9g %.9g \"%s, %s, %s\"\n", row->cpu_ms, row->rmse,
-                method_info(row->method)->name, report_bench_passes(row->passes, passes),
-                plot->report->plan->formats[row->format].name);
+        for (int k = 0; k < labels && room; k++)
+            room = !is_near(labelled[k], row, times, errors);
+        fprintf(script, "%.9g %.9g", row->cpu_ms, row->rmse);
+        if (room)
+            put_label(script, plot->report->plan, labelled[labels++] = row);
+        fprintf(script, room ? "\n" : " \"\"\n");
         points++;
     }
     fprintf(script, "END\n");
@@ -287,7 +323,7 @@ static void write_errors(FILE *script, const void *what)
     put_head(script, "CPU time, ms", "root mean square error against truth");
     for (int r = 0; r < BENCH_RENDERERS; r++)
         points[r] = put_points(script, plot, r, &times, &errors);
-    int front = put_front(script, plot);
+    int front = put_front(script, plot, times, errors);
     /* Room for the labels on the right. */
     put_scale(script, "x", (Range){times.low, 2.0 * times.high});
     put_scale(script, "y", errors);
@@ -304,7 +340,7 @@ static void write_errors(FILE *script, const void *what)
                 "%s$front using 1:2 with points pointtype 6 pointsize 1.4 linewidth 1.5 linecolor "
                 "'#1b2029' title 'Pareto front'",
                 separator);
-    if (front > 0 && front <= 12)
+    if (front > 0)
         fprintf(script,
                 ", \\\n  $front using 1:2:3 with labels noenhanced left offset 1.2,0.4 font "
                 "',11' notitle");
