@@ -3,8 +3,9 @@
 #include "cli/bind.h"
 #include "cli/options.h"
 #include "frame/method.h"
-#include "gl/gl_renderer.h"
+#include "ref/pipeline/roofline.h"
 #include "report/bench.h"
+#include "report/roofline.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +18,7 @@ typedef struct BenchCommand {
     const char *scenes[BENCH_AXIS_MAX];
     Scene loaded[BENCH_AXIS_MAX];
     int scene_count;
-    bool has_renderers, paper, no_errors;
+    bool has_renderers, paper, no_errors, roofline;
     const char *json, *report;
 } BenchCommand;
 
@@ -32,6 +33,7 @@ enum {
     KEY_RUNS,
     KEY_NO_ERROR,
     KEY_PRESET,
+    KEY_ROOFLINE,
     KEY_JSON,
     KEY_REPORT
 };
@@ -59,6 +61,10 @@ static const struct argp_option command_options[] = {
     {"preset", KEY_PRESET, "NAME", 0,
      "paper: teapot_hall and teapot_hall_stress, 1920x1080, passes 4,8,12,16, lights "
      "16,32,64,128, threads 2; what is given beside it counts",
+     1},
+    {"roofline", KEY_ROOFLINE, 0, 0,
+     "Instead: what this machine's arithmetic and memory do at most, and what ref's lighting loop "
+     "does of it; takes --threads (one value) and --json",
      1},
     {"json", KEY_JSON, "FILE", 0, "Write the rows as JSON", 1},
     {"report", KEY_REPORT, "DIR", 0, "Write a page with plots to DIR/index.html", 1},
@@ -232,6 +238,9 @@ static error_t parse_other(int key, char *argument, BenchCommand *command)
     case KEY_NO_ERROR:
         command->no_errors = true;
         return 0;
+    case KEY_ROOFLINE:
+        command->roofline = true;
+        return 0;
     case KEY_PRESET:
         command->paper = true;
         return strcmp(argument, "paper") == 0
@@ -246,7 +255,7 @@ static error_t parse_other(int key, char *argument, BenchCommand *command)
     case ARGP_KEY_ARG:
         return add_scene(argument, command);
     case ARGP_KEY_SUCCESS:
-        return command->scene_count || command->paper
+        return command->scene_count || command->paper || command->roofline
                    ? 0
                    : options_error("no scene given; expected .gltf or .glb files or names of "
                                    "built-in scenes");
@@ -298,82 +307,6 @@ static const struct argp command_argp = {
     NULL,
     NULL};
 
-/* ---- renderers ------------------------------------------------------------------------------- */
-
-/* A renderer without anything to keep between frames. */
-typedef struct Stateless {
-    const Scene *scene;
-    const RenderDesc *desc;
-    Renderer renderer;
-} Stateless;
-
-static Result open_stateless(const Scene *scene, const RenderDesc *desc, Renderer renderer,
-                             void **state)
-{
-    Stateless *stateless = malloc(sizeof *stateless);
-    *state = stateless;
-    if (!stateless)
-        return result_fail(RESULT_NO_MEMORY, "out of memory");
-    *stateless = (Stateless){scene, desc, renderer};
-    return RESULT_OK;
-}
-
-static Result open_ref(const Scene *scene, const RenderDesc *desc, void **state)
-{
-    return open_stateless(scene, desc, bind_renderers[RENDERER_REF], state);
-}
-
-static Result open_truth(const Scene *scene, const RenderDesc *desc, void **state)
-{
-    return open_stateless(scene, desc, bind_renderers[RENDERER_TRUTH], state);
-}
-
-static Result frame_stateless(void *state, bool images, Frame *out)
-{
-    const Stateless *stateless = state;
-    (void)images; /* it always makes them */
-    return stateless->renderer(stateless->scene, stateless->desc, NULL, out);
-}
-
-static Result open_gl(const Scene *scene, const RenderDesc *desc, bool reject_early, void **state)
-{
-    const GlOptions options = {.every_pass = true, .reject_early = reject_early};
-    GlSession *session;
-    char threads[16];
-    snprintf(threads, sizeof threads, "%d", desc->threads);
-    setenv("LP_NUM_THREADS", threads, 1); /* read once, by the process's first context */
-    Result result = gl_session_open(scene, desc, &options, NULL, &session);
-    *state = session;
-    return result;
-}
-
-static Result open_gl_plain(const Scene *scene, const RenderDesc *desc, void **state)
-{
-    return open_gl(scene, desc, false, state);
-}
-
-static Result open_gl_early(const Scene *scene, const RenderDesc *desc, void **state)
-{
-    return open_gl(scene, desc, true, state);
-}
-
-static Result frame_gl(void *state, bool images, Frame *out)
-{
-    return gl_session_frame(state, images, out);
-}
-
-static void close_gl(void *state)
-{
-    gl_session_close(state);
-}
-
-static const BenchRenderer renderers[BENCH_RENDERERS] = {
-    [BENCH_REF] = {open_ref, frame_stateless, free},
-    [BENCH_GL] = {open_gl_plain, frame_gl, close_gl},
-    [BENCH_GL_EARLY] = {open_gl_early, frame_gl, close_gl},
-    [BENCH_TRUTH] = {open_truth, frame_stateless, free},
-};
-
 /* ---- the command ----------------------------------------------------------------------------- */
 
 static Result load_scenes(BenchCommand *command)
@@ -416,7 +349,7 @@ static Result run(BenchCommand *command, const char *line, BenchReport *report)
         result = load_scenes(command);
     if (result != RESULT_OK)
         return result;
-    command->plan.bound = renderers;
+    command->plan.bound = bind_bench;
     command->plan.truth = bind_renderers[RENDERER_TRUTH];
     printf("%zu rows, %d runs each\n", bench_row_count(&command->plan), command->plan.runs);
     result = bench_run(&command->plan, print_group, NULL, report);
@@ -425,6 +358,29 @@ static Result run(BenchCommand *command, const char *line, BenchReport *report)
     report_bench_print_ratios(report, stdout);
     fflush(stdout); /* before a --json /dev/stdout */
     return write_files(command, report, line);
+}
+
+enum {
+    ROOFLINE_STRETCH_MS = 40
+};
+
+static int run_roofline(const BenchCommand *command)
+{
+    const BenchPlan *plan = &command->plan;
+    RooflineReport report;
+    Result result = options_check_output(command->json);
+    if (command->scene_count || plan->thread_count > 1 || command->report)
+        result = result_fail(RESULT_BAD_INPUT, "--roofline: expected no scene, no --report and at "
+                                               "most one value of --threads");
+    if (result == RESULT_OK)
+        result = roofline_run(roofline_kernels, plan->threads[0], ROOFLINE_STRETCH_MS, &report);
+    if (result != RESULT_OK)
+        return options_fail(result);
+    report_roofline_print(&report, stdout);
+    fflush(stdout); /* before a --json /dev/stdout */
+    if (command->json)
+        result = report_roofline_json(&report, command->json);
+    return result == RESULT_OK ? EXIT_AGREE : options_fail(result);
 }
 
 static int finish(Result result, const BenchReport *report)
@@ -450,6 +406,10 @@ int cmd_bench(int argc, char **argv)
     if (code) {
         free(line);
         return code == OPTIONS_HELPED ? EXIT_AGREE : code;
+    }
+    if (command.roofline) {
+        free(line);
+        return run_roofline(&command);
     }
     set_defaults(&command);
     Result result =

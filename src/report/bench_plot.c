@@ -101,7 +101,7 @@ static void put_head(FILE *script, const char *x, const char *y)
     fprintf(script,
             "set terminal svg size 720,420 dynamic font 'sans-serif,13' background '#ffffff'\n"
             "set grid back linecolor '#dddddd'\nset border 3 linecolor '#566070'\n"
-            "set key outside right top reverse Left noenhanced\n"
+            "set key below reverse Left noenhanced\n"
             "set xlabel '%s'\nset ylabel '%s'\n",
             x, y);
 }
@@ -113,10 +113,13 @@ typedef struct AxisPlot {
     BenchAxis axis;
 } AxisPlot;
 
-/* The first row, and the last: the ends at which other axes are held. */
+/* The first row, and the last in its format: the ends at which other axes are held. */
 static const BenchRow *end_of(const BenchReport *report, int end)
 {
-    return &report->rows[end ? report->count - 1 : 0];
+    const BenchRow *row = &report->rows[end ? report->count - 1 : 0];
+    while (row->format != report->rows[0].format)
+        row--;
+    return row;
 }
 
 static bool is_held(const AxisPlot *plot, const BenchRow *row, int end)
@@ -135,7 +138,7 @@ static bool is_held(const AxisPlot *plot, const BenchRow *row, int end)
 static bool ends_differ(const AxisPlot *plot)
 {
     const BenchReport *report = plot->report;
-    return !is_held(plot, end_of(report, 0), 1) && end_of(report, 1)->format == 0;
+    return !is_held(plot, end_of(report, 0), 1);
 }
 
 /* Whether the two ends have other values of it; of triangles: other scenes. */
