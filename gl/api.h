@@ -45,6 +45,7 @@
     X(DELETETEXTURES, DeleteTextures)                                                              \
     X(DELETEVERTEXARRAYS, DeleteVertexArrays)                                                      \
     X(DEPTHFUNC, DepthFunc)                                                                        \
+    X(DEPTHMASK, DepthMask)                                                                        \
     X(DETACHSHADER, DetachShader)                                                                  \
     X(DISABLE, Disable)                                                                            \
     X(DRAWARRAYS, DrawArrays)                                                                      \

@@ -171,7 +171,7 @@ void passes_depth_test(const RenderDesc *desc, DepthFunc func)
         gl.DepthFunc(func == DEPTH_LEQUAL ? GL_LEQUAL : GL_LESS);
 }
 
-static void set_state(const Passes *passes)
+void passes_begin(const Passes *passes)
 {
     const RenderDesc *desc = passes->desc;
     gl.ProgramUniform3fv(passes->resolve, UNIFORM_BACKGROUND, 1, passes->view->background);
@@ -182,28 +182,33 @@ static void set_state(const Passes *passes)
     gl.BindVertexArray(passes->meshes.vertex_array);
 }
 
-Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc, const View *view,
-                     TraceSink *trace, Passes *out)
+static Result make(Passes *out)
 {
-    *out = (Passes){.context = context, .scene = scene, .desc = desc, .view = view, .trace = trace};
-    Result result = targets_create(context, desc, &out->targets);
+    const RenderDesc *desc = out->desc;
+    Result result = targets_create(out->context, desc, &out->targets);
     if (result == RESULT_OK)
-        result = upload_meshes(context, scene, &out->meshes);
+        result = upload_meshes(out->context, out->scene, &out->meshes);
     if (result == RESULT_OK)
-        result = upload_lights(context, view, &out->lights);
+        result = upload_lights(out->context, out->view, &out->lights);
     if (result == RESULT_OK)
-        result = upload_textures(context, scene, desc, out->targets.bytes, &out->textures);
+        result =
+            upload_textures(out->context, out->scene, desc, out->targets.bytes, &out->textures);
     if (result == RESULT_OK)
         result = build_programs(out);
-    if (result == RESULT_OK && trace) {
+    if (result == RESULT_OK && out->trace) {
         out->pixels = memory_array((size_t)desc->width * (size_t)desc->height, 4 * sizeof(float));
         result = out->pixels ? RESULT_OK : RESULT_NO_MEMORY;
     }
-    if (result == RESULT_OK) {
-        gl.CreateQueries(GL_SAMPLES_PASSED, 1, &out->samples);
-        set_state(out);
-        result = context_check(context, "set-up");
-    }
+    if (result != RESULT_OK)
+        return result;
+    gl.CreateQueries(GL_SAMPLES_PASSED, 1, &out->samples);
+    return context_check(out->context, "set-up");
+}
+
+Result passes_create(const Passes *in, Passes *out)
+{
+    *out = *in;
+    Result result = make(out);
     if (result != RESULT_OK)
         passes_destroy(out);
     return result;
@@ -311,6 +316,8 @@ Result passes_end_count(const Passes *passes, const char *what, uint64_t *sample
 {
     GLuint64 count = 0;
     gl.EndQuery(GL_SAMPLES_PASSED);
+    if (!samples)
+        return RESULT_OK;
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
     *samples = count;
     return context_check(passes->context, what);
@@ -373,9 +380,8 @@ Result passes_end_opaque(Passes *passes)
 
 Result passes_opaque(Passes *passes)
 {
-    uint64_t samples;
     passes_begin_opaque(passes);
-    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, &samples);
+    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, NULL);
     return result == RESULT_OK ? passes_end_opaque(passes) : result;
 }
 
@@ -400,13 +406,32 @@ void passes_blend_over(void)
     gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
 }
 
+/* Whether only pixels in front of the far end, where shaders/fullscreen.vert.glsl draws, pass. */
+static void test_far(const Passes *passes, bool on)
+{
+    gl.DepthMask(!on);
+    if (on) {
+        gl.DepthFunc(passes->desc->depth_range == DEPTH_RANGE_REVERSED ? GL_LESS : GL_GREATER);
+        gl.Enable(GL_DEPTH_TEST);
+    } else {
+        passes_depth_test(passes->desc, passes->desc->depth_func);
+        gl.Disable(GL_DEPTH_TEST);
+    }
+}
+
 /* Where no position is stored, the depth takes its texture unit. */
 static void light(const Passes *passes, GLuint program, const Layer *layer)
 {
     for (GLuint i = 0; i < GBUFFER_TARGETS; i++)
         gl.BindTextureUnit(i, layer->color[i] ? layer->color[i] : layer->depth);
     gl.Enable(GL_BLEND);
-    passes_fullscreen(passes, program, passes->targets.plain_buffer);
+    if (passes->options.reject_early)
+        test_far(passes, true);
+    passes_fullscreen(passes, program,
+                      passes->options.reject_early ? layer->light_buffer
+                                                   : passes->targets.plain_buffer);
+    if (passes->options.reject_early)
+        test_far(passes, false);
     gl.Disable(GL_BLEND);
 }
 

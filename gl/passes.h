@@ -5,7 +5,7 @@
 #ifndef PEEL_GL_PASSES_H
 #define PEEL_GL_PASSES_H
 
-#include "frame/frame.h"
+#include "gl_renderer.h"
 #include "targets.h"
 #include "upload.h"
 
@@ -15,7 +15,8 @@ typedef struct Passes {
     const RenderDesc *desc;
     const View *view;
     TraceSink *trace; /* may be NULL */
-    void *pixels;     /* scratch for read-back, 16 bytes a pixel; NULL without a trace */
+    GlOptions options;
+    void *pixels; /* scratch for read-back, 16 bytes a pixel; NULL without a trace */
     Targets targets;
     Meshes meshes;
     LightBuffer lights;
@@ -24,11 +25,13 @@ typedef struct Passes {
     GLuint samples;                                                  /* query */
 } Passes;
 
-/* Uploads the scene and builds programs and buffers; scene, desc, view and trace must outlive
- * *out. On failure *out is empty. */
-Result passes_create(Context *context, const Scene *scene, const RenderDesc *desc, const View *view,
-                     TraceSink *trace, Passes *out);
+/* Uploads the scene and builds programs and buffers. in: context to trace, which must outlive *out,
+ * and options; the rest is 0. On failure *out is empty. */
+Result passes_create(const Passes *in, Passes *out);
 void passes_destroy(Passes *passes);
+
+/* Sets what the passes of a frame expect of the driver's state; frames may have changed it. */
+void passes_begin(const Passes *passes);
 
 /* ---- programs ---- */
 
@@ -61,7 +64,7 @@ void passes_draw_list(const Passes *passes, GLuint program, bool transparent);
 /* Makes func, mirrored where desc->depth_range is, the depth function: at first desc's own is. */
 void passes_depth_test(const RenderDesc *desc, DepthFunc func);
 /* Counting the fragments that passed, of what is drawn between the two. The end fails when that
- * has failed: `what` names it. */
+ * has failed: `what` names it. With samples NULL it does not wait for the driver. */
 void passes_begin_count(const Passes *passes);
 Result passes_end_count(const Passes *passes, const char *what, uint64_t *samples);
 /* As passes_draw_list, with the depth test on, counted. */

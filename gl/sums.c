@@ -7,38 +7,31 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef struct Sums {
-    Passes *passes;
-    const SumsMethod *method;
-    PixelFormat format[2];    /* of the sum and the second */
-    int count;                /* of buffers */
-    GLuint geometry, combine; /* programs */
-    GLuint texture[2], buffer;
-    void *pixels; /* of one buffer, read back */
-} Sums;
-
 static Result make_programs(Sums *sums)
 {
     const Passes *passes = sums->passes;
     const PassesSource geometry = {
-        .surface = true, .peel_test = true, .shade = true, .main = sums->method->shader};
-    const PassesSource combine = {.main = sums->method->shader};
+        .surface = true, .peel_test = true, .shade = true, .main = sums->method.shader};
+    const PassesSource combine = {.main = sums->method.shader};
     char defines[128];
-    snprintf(defines, sizeof defines, "%s%s", sums->method->defines,
+    snprintf(defines, sizeof defines, "%s%s", sums->method.defines,
              passes->desc->back_light ? "#define BACK_LIGHT\n" : "");
-    Result result = passes_program(passes, sums->method->name, defines, &geometry, &sums->geometry);
+    Result result = passes_program(passes, sums->method.name, defines, &geometry, &sums->geometry);
     if (result == RESULT_OK)
-        result = passes_program(passes, sums->method->name, "#define COMBINE\n", &combine,
+        result = passes_program(passes, sums->method.name, "#define COMBINE\n", &combine,
                                 &sums->combine);
     return result;
 }
 
-static Result make(Sums *sums)
+Result sums_create(Passes *passes, const SumsMethod *method, void *state)
 {
-    Targets *targets = &sums->passes->targets;
+    Sums *sums = state;
+    Targets *targets = &passes->targets;
+    sums->passes = passes;
+    sums->method = *method;
     sums->format[0] = targets->accum_format == FORMAT_RGBA32F ? FORMAT_RGBA32F : FORMAT_RGBA16F;
     sums->format[1] = FORMAT_R32F;
-    sums->count = *sums->method->second ? 2 : 1;
+    sums->count = *sums->method.second ? 2 : 1;
     sums->pixels = memory_array((size_t)targets->width * (size_t)targets->height,
                                 format_pixel_bytes(sums->format[0]));
     Result result = sums->pixels ? make_programs(sums) : RESULT_NO_MEMORY;
@@ -48,8 +41,9 @@ static Result make(Sums *sums)
                                : result;
 }
 
-static void destroy(Sums *sums)
+void sums_destroy(void *state)
 {
+    Sums *sums = state;
     gl.DeleteProgram(sums->geometry);
     gl.DeleteProgram(sums->combine);
     gl.DeleteFramebuffers(1, &sums->buffer);
@@ -60,7 +54,7 @@ static void destroy(Sums *sums)
 static Result draw(Sums *sums, Frame *out)
 {
     const Passes *passes = sums->passes;
-    const float zero[4] = {0}, start[4] = {sums->method->start};
+    const float zero[4] = {0}, start[4] = {sums->method.start};
     uint64_t samples;
     gl.ClearNamedFramebufferfv(sums->buffer, GL_COLOR, 0, zero);
     if (sums->count > 1)
@@ -70,7 +64,7 @@ static Result draw(Sums *sums, Frame *out)
     gl.Enable(GL_BLEND);
     gl.BlendFunc(GL_ONE, GL_ONE);
     if (sums->count > 1)
-        gl.BlendFunci(1, sums->method->source, sums->method->destination);
+        gl.BlendFunci(1, sums->method.source, sums->method.destination);
     /* Without a depth attachment there is no depth test. */
     Result result = passes_draw_counted(passes, sums->geometry, true, &samples);
     gl.Disable(GL_BLEND);
@@ -85,7 +79,7 @@ static Result read_sums(Sums *sums, Frame *out)
 {
     const Passes *passes = sums->passes;
     const Targets *targets = &passes->targets;
-    const char *what[] = {"sum", sums->method->second};
+    const char *what[] = {"sum", sums->method.second};
     size_t pixels = (size_t)targets->width * (size_t)targets->height;
     Result result = RESULT_OK;
     for (int i = 0; i < (passes->trace ? sums->count : 1) && result == RESULT_OK; i++) {
@@ -95,7 +89,7 @@ static Result read_sums(Sums *sums, Frame *out)
         for (size_t k = 0; k < pixels && i == 0; k++)
             out->layers.overflowed += format_overflowed(format, (const char *)sums->pixels +
                                                                     k * format_pixel_bytes(format));
-        snprintf(name, sizeof name, "%s.%s", sums->method->name, what[i]);
+        snprintf(name, sizeof name, "%s.%s", sums->method.name, what[i]);
         result = trace_put(passes->trace, name, 1, format, targets->width, targets->height,
                            sums->pixels);
     }
@@ -112,20 +106,16 @@ static void combine(const Sums *sums)
     gl.Disable(GL_BLEND);
 }
 
-Result sums_draw(Passes *passes, Frame *out, const SumsMethod *method)
+Result sums_draw(void *state, Frame *out)
 {
-    Sums sums = {.passes = passes, .method = method};
-    Result result = make(&sums);
+    Sums *sums = state;
+    Result result = passes_opaque(sums->passes);
     if (result == RESULT_OK)
-        result = passes_opaque(passes);
+        result = draw(sums, out);
     if (result == RESULT_OK)
-        result = draw(&sums, out);
-    if (result == RESULT_OK)
-        result = read_sums(&sums, out);
-    if (result == RESULT_OK) {
-        combine(&sums);
-        result = passes_finish(passes, out->peels);
-    }
-    destroy(&sums);
-    return result;
+        result = read_sums(sums, out);
+    if (result != RESULT_OK)
+        return result;
+    combine(sums);
+    return passes_finish(sums->passes, out->peels);
 }

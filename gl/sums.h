@@ -17,7 +17,19 @@ typedef struct SumsMethod {
     char defines[64]; /* of the geometry pass */
 } SumsMethod;
 
-/* The frame up to the resolve pass, as every method. */
-Result sums_draw(Passes *passes, Frame *out, const SumsMethod *method);
+typedef struct Sums {
+    Passes *passes;
+    SumsMethod method;
+    PixelFormat format[2];    /* of the sum and the second */
+    int count;                /* of buffers */
+    GLuint geometry, combine; /* programs */
+    GLuint texture[2], buffer;
+    void *pixels; /* of one buffer, read back */
+} Sums;
+
+/* What a GlMethod consists of; create for the rest. state: a Sums. method is copied. */
+Result sums_create(Passes *passes, const SumsMethod *method, void *state);
+Result sums_draw(void *state, Frame *out);
+void sums_destroy(void *state);
 
 #endif

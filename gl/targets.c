@@ -130,12 +130,15 @@ Result targets_layer(Targets *targets, const Layer *shared, Layer *out)
     }
     if (result == RESULT_OK)
         result = targets_framebuffer(targets->color_count, attached, out->depth, &out->buffer);
+    if (result == RESULT_OK)
+        result = targets_framebuffer(1, &targets->accum, out->depth, &out->light_buffer);
     return result;
 }
 
 void targets_destroy_layer(Layer *layer, bool shares_color)
 {
     gl.DeleteFramebuffers(1, &layer->buffer);
+    gl.DeleteFramebuffers(1, &layer->light_buffer);
     gl.DeleteTextures(1, &layer->depth);
     if (!shares_color)
         gl.DeleteTextures(GBUFFER_TARGETS, layer->color);
@@ -144,11 +147,11 @@ void targets_destroy_layer(Layer *layer, bool shares_color)
 
 static Result make(const RenderDesc *desc, Targets *out)
 {
-    Result result = targets_layer(out, NULL, &out->opaque);
+    Result result = targets_texture(out, out->accum_format, &out->accum);
+    if (result == RESULT_OK)
+        result = targets_layer(out, NULL, &out->opaque);
     if (result == RESULT_OK && targets_needs_code(desc))
         result = targets_texture(out, FORMAT_R32UI, &out->opaque_code);
-    if (result == RESULT_OK)
-        result = targets_texture(out, out->accum_format, &out->accum);
     if (result == RESULT_OK)
         result = targets_texture(out, FORMAT_RGBA32F, &out->final);
     if (result == RESULT_OK)

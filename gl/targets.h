@@ -18,6 +18,7 @@ enum {
 /* A G-buffer: textures, 0 for a colour that is not stored, and the framebuffer that they make. */
 typedef struct Layer {
     GLuint depth, color[GBUFFER_TARGETS], buffer;
+    GLuint light_buffer; /* framebuffer of the accumulation with this depth */
 } Layer;
 
 typedef struct Targets {

@@ -65,10 +65,11 @@ static Result build_programs(const Passes *passes, Dual *state)
     return result;
 }
 
-static Result make(Passes *passes, Frame *frame, Dual *state)
+static Result create(Passes *passes, void *into)
 {
+    Dual *state = into;
     GLuint attached[ATTACHMENTS];
-    Result result = limits_create(passes, frame, &state->limits);
+    Result result = limits_create(passes, &state->limits);
     if (result == RESULT_OK)
         result = build_programs(passes, state);
     for (int i = 0; i < SIDES * TARGETS && result == RESULT_OK; i++) {
@@ -83,8 +84,9 @@ static Result make(Passes *passes, Frame *frame, Dual *state)
     return result;
 }
 
-static void destroy(Dual *state)
+static void destroy(void *of)
 {
+    Dual *state = of;
     gl.DeleteProgram(state->peel);
     gl.DeleteFramebuffers(2, state->buffers);
     for (int side = 0; side < SIDES; side++) {
@@ -160,18 +162,17 @@ static Result draw_peel(void *context, int peel)
     return result == RESULT_OK ? trace_peel(state, peel) : result;
 }
 
-Result gl_dual(Passes *passes, Frame *out)
+static Result draw(void *of, Frame *out)
 {
-    Dual state = {0};
-    Result result = make(passes, out, &state);
+    Dual *state = of;
+    Passes *passes = state->limits.passes;
+    Result result = passes_opaque(passes);
     if (result == RESULT_OK)
-        result = passes_opaque(passes);
-    if (result == RESULT_OK)
-        result = limits_peels(&state.limits, draw_peel, &state);
-    if (result == RESULT_OK) {
-        limits_compose(&state.limits);
-        result = passes_finish(passes, out->peels);
-    }
-    destroy(&state);
-    return result;
+        result = limits_peels(&state->limits, out, draw_peel, state);
+    if (result != RESULT_OK)
+        return result;
+    limits_compose(&state->limits);
+    return passes_finish(passes, out->peels);
 }
+
+const GlMethod gl_dual = {sizeof(Dual), create, draw, destroy};

@@ -39,10 +39,11 @@ static Result build_program(const Passes *passes, GLuint *out)
     return passes_program(passes, "forward dual peel", defines, &source, out);
 }
 
-static Result make(Passes *passes, Frame *frame, ForwardDual *state)
+static Result create(Passes *passes, void *into)
 {
+    ForwardDual *state = into;
     Targets *targets = &passes->targets;
-    Result result = limits_create(passes, frame, &state->limits);
+    Result result = limits_create(passes, &state->limits);
     if (result == RESULT_OK)
         result = build_program(passes, &state->peel);
     if (result == RESULT_OK)
@@ -54,14 +55,13 @@ static Result make(Passes *passes, Frame *frame, ForwardDual *state)
         const GLuint colors[3] = {state->limits.textures[i], state->front[i], state->back};
         if (result == RESULT_OK)
             result = targets_framebuffer(3, colors, 0, &state->buffers[i]);
-        if (result == RESULT_OK)
-            gl.ClearNamedFramebufferfv(state->buffers[i], GL_COLOR, 1, zero);
     }
     return result;
 }
 
-static void destroy(ForwardDual *state)
+static void destroy(void *of)
 {
+    ForwardDual *state = of;
     gl.DeleteProgram(state->peel);
     gl.DeleteProgram(state->copy);
     gl.DeleteFramebuffers(2, state->buffers);
@@ -108,10 +108,10 @@ static Result draw_peel(void *context, int peel)
 }
 
 /* The front colour of the last peel, under the empty accumulation; then the back. */
-static void compose(const ForwardDual *state)
+static void compose(const ForwardDual *state, int peels)
 {
     const Passes *passes = state->limits.passes;
-    gl.BindTextureUnit(0, state->front[limits_previous(state->limits.frame->peels)]);
+    gl.BindTextureUnit(0, state->front[limits_previous(peels)]);
     passes_blend_under();
     gl.Enable(GL_BLEND);
     passes_fullscreen(passes, state->copy, passes->targets.plain_buffer);
@@ -119,18 +119,19 @@ static void compose(const ForwardDual *state)
     limits_compose(&state->limits);
 }
 
-Result gl_forward_dual(Passes *passes, Frame *out)
+static Result draw(void *of, Frame *out)
 {
-    ForwardDual state = {0};
-    Result result = make(passes, out, &state);
+    ForwardDual *state = of;
+    Passes *passes = state->limits.passes;
+    for (int i = 0; i < 2; i++)
+        gl.ClearNamedFramebufferfv(state->buffers[i], GL_COLOR, 1, zero);
+    Result result = passes_opaque(passes);
     if (result == RESULT_OK)
-        result = passes_opaque(passes);
-    if (result == RESULT_OK)
-        result = limits_peels(&state.limits, draw_peel, &state);
-    if (result == RESULT_OK) {
-        compose(&state);
-        result = passes_finish(passes, out->peels);
-    }
-    destroy(&state);
-    return result;
+        result = limits_peels(&state->limits, out, draw_peel, state);
+    if (result != RESULT_OK)
+        return result;
+    compose(state, out->peels);
+    return passes_finish(passes, out->peels);
 }
+
+const GlMethod gl_forward_dual = {sizeof(ForwardDual), create, draw, destroy};

@@ -33,11 +33,10 @@ static Result build_programs(Limits *limits)
     return result;
 }
 
-Result limits_create(Passes *passes, Frame *frame, Limits *out)
+Result limits_create(Passes *passes, Limits *out)
 {
-    static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     Targets *targets = &passes->targets;
-    *out = (Limits){.passes = passes, .frame = frame};
+    *out = (Limits){.passes = passes};
     Result result = build_programs(out);
     for (int i = 0; i < 2 && result == RESULT_OK; i++) {
         result = targets_texture(targets, FORMAT_RG32F, &out->textures[i]);
@@ -48,8 +47,6 @@ Result limits_create(Passes *passes, Frame *frame, Limits *out)
         result = targets_texture(targets, targets->accum_format, &out->back);
     if (result == RESULT_OK)
         result = targets_framebuffer(1, &out->back, 0, &out->back_buffer);
-    if (result == RESULT_OK)
-        gl.ClearNamedFramebufferfv(out->back_buffer, GL_COLOR, 0, no_color_all_transmitted);
     return result;
 }
 
@@ -134,11 +131,13 @@ static Result any_layer(const Limits *limits, int which, bool *any)
     return result;
 }
 
-Result limits_peels(Limits *limits, Result (*draw_peel)(void *state, int peel), void *state)
+Result limits_peels(Limits *limits, Frame *frame, Result (*draw_peel)(void *state, int peel),
+                    void *state)
 {
-    Frame *frame = limits->frame;
+    static const float no_color_all_transmitted[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     int most = render_desc_pass_limit(limits->passes->desc);
     bool any = false;
+    gl.ClearNamedFramebufferfv(limits->back_buffer, GL_COLOR, 0, no_color_all_transmitted);
     progress_add();
     frame->geometry_passes = 1;
     Result result = draw_first(limits);

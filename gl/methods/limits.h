@@ -9,15 +9,14 @@
 
 typedef struct Limits {
     Passes *passes;
-    Frame *frame;
     GLuint first, count, copy_under; /* programs */
     GLuint textures[2];              /* RG32F: (−nearest, farthest); take turns */
     GLuint buffers[2];               /* framebuffers of one each */
     GLuint back, back_buffer;        /* accumulation of the back layers */
 } Limits;
 
-/* frame and passes must outlive *out. On failure *out holds what there is. */
-Result limits_create(Passes *passes, Frame *frame, Limits *out);
+/* passes must outlive *out. On failure *out holds what there is. */
+Result limits_create(Passes *passes, Limits *out);
 void limits_destroy(Limits *limits);
 
 /* Which of the two a peel, from 0, reads and draws. */
@@ -30,9 +29,11 @@ static inline int limits_current(int peel)
     return 1 - (peel & 1);
 }
 
-/* The first pass and the peels, up to desc->passes; sets the frame's peels and passes. draw_peel
- * gets state and the peel: it clears and draws its targets, blends, traces. */
-Result limits_peels(Limits *limits, Result (*draw_peel)(void *state, int peel), void *state);
+/* Clears the back accumulation and draws the first pass and the peels, up to desc->passes; sets the
+ * frame's peels and passes. draw_peel gets state and the peel: it clears and draws its targets,
+ * blends, traces. */
+Result limits_peels(Limits *limits, Frame *frame, Result (*draw_peel)(void *state, int peel),
+                    void *state);
 
 /* A program of limits.frag.glsl over every pixel. */
 Result limits_copy_program(const Passes *passes, const char *defines, GLuint *out);

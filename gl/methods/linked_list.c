@@ -155,9 +155,10 @@ static Result make_materials(Lists *state)
     return result;
 }
 
-static Result make(Lists *state)
+static Result create(Passes *passes, void *into)
 {
-    const Passes *passes = state->passes;
+    Lists *state = into;
+    state->passes = passes;
     size_t pixels = (size_t)passes->desc->width * (size_t)passes->desc->height;
     state->words = node_words(passes->scene);
     state->heads_bytes = (HEADER_WORDS + pixels) * sizeof(uint32_t);
@@ -171,8 +172,9 @@ static Result make(Lists *state)
     return result;
 }
 
-static void destroy(Lists *state)
+static void destroy(void *of)
 {
+    Lists *state = of;
     gl.DeleteProgram(state->list);
     gl.DeleteProgram(state->visible);
     gl.DeleteProgram(state->extract);
@@ -206,10 +208,9 @@ static GLintptr last_primitive(const Lists *state)
                       NODE_PRIMITIVE * sizeof(uint32_t));
 }
 
-/* Room for `capacity` nodes, the last of them marked as not stored. */
+/* Room for `capacity` nodes. */
 static Result make_nodes(Lists *state, uint64_t capacity)
 {
-    static const uint32_t none = NODE_NONE;
     Targets *targets = &state->passes->targets;
     uint64_t bytes = capacity * node_bytes(state);
     if (bytes > UINT32_MAX)
@@ -220,7 +221,6 @@ static Result make_nodes(Lists *state, uint64_t capacity)
     Result result = targets_buffer(targets, state->nodes_bytes, &state->nodes);
     if (result != RESULT_OK)
         return result;
-    gl.NamedBufferSubData(state->nodes, last_primitive(state), sizeof none, &none);
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, BLOCK_NODES, state->nodes);
     gl.ProgramUniform1ui(state->list, UNIFORM_CAPACITY, state->capacity);
     return context_check(state->passes->context, "list nodes");
@@ -242,6 +242,7 @@ static void read_header(Lists *state)
     gl.GetNamedBufferSubData(state->heads, 0, sizeof state->header, &state->header);
 }
 
+/* The last node is marked as not stored before: see check_nodes. */
 static Result draw_lists(Lists *state)
 {
     static const Header zero = {0};
@@ -250,6 +251,7 @@ static Result draw_lists(Lists *state)
     const View *view = passes->view;
     progress_add();
     state->frame->geometry_passes++;
+    gl.NamedBufferSubData(state->nodes, last_primitive(state), sizeof none, &none);
     gl.ClearNamedBufferData(state->heads, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
     gl.NamedBufferSubData(state->heads, 0, sizeof zero, &zero);
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, BLOCK_HEADS, state->heads);
@@ -285,8 +287,9 @@ static Result build_lists(Lists *state)
     const RenderDesc *desc = state->passes->desc;
     uint64_t pixels = (uint64_t)desc->width * (uint64_t)desc->height;
     bool fixed = desc->nodes_per_pixel > 0;
-    Result result =
-        make_nodes(state, fixed ? (uint64_t)desc->nodes_per_pixel * pixels : guess(state));
+    Result result = RESULT_OK;
+    if (!state->nodes) /* the first frame: later ones need as much */
+        result = make_nodes(state, fixed ? (uint64_t)desc->nodes_per_pixel * pixels : guess(state));
     if (result == RESULT_OK)
         result = draw_lists(state);
     if (result == RESULT_OK && !fixed && state->header.asked > state->capacity) {
@@ -317,7 +320,8 @@ static Result sort_lists(Lists *state)
         return result_fail(RESULT_UNSUPPORTED,
                            "linked-list: %u nodes in one pixel, expected fewer than %d",
                            state->header.deepest, PIXEL_NODES_MAX);
-    Result result = build_order(state);
+    /* Later frames have the same lists. */
+    Result result = state->order ? RESULT_OK : build_order(state);
     if (result != RESULT_OK)
         return result;
     if (sorted_at_once(state))
@@ -393,8 +397,11 @@ static void report(const Lists *state)
                 (unsigned long long)frame->nodes);
 }
 
-static Result run(Lists *state)
+static Result draw(void *of, Frame *out)
 {
+    Lists *state = of;
+    state->blended = 0;
+    state->frame = out;
     Result result = build_lists(state);
     if (result == RESULT_OK)
         result = sort_lists(state);
@@ -407,12 +414,4 @@ static Result run(Lists *state)
     return result;
 }
 
-Result gl_linked_list(Passes *passes, Frame *out)
-{
-    Lists state = {.passes = passes, .frame = out};
-    Result result = make(&state);
-    if (result == RESULT_OK)
-        result = run(&state);
-    destroy(&state);
-    return result;
-}
+const GlMethod gl_linked_list = {sizeof(Lists), create, draw, destroy};

@@ -40,29 +40,48 @@ static Result paint(const Passes *passes, GLuint program, const Sort *sort, Fram
     return result;
 }
 
-Result gl_painter(Passes *passes, Frame *out)
+typedef struct Painter {
+    Passes *passes;
+    GLuint program;
+} Painter;
+
+static Result create(Passes *passes, void *into)
 {
     const PassesSource source = {
         .surface = true, .peel_test = true, .shade = true, .main = shader_painter_frag};
     const RenderDesc *desc = passes->desc;
-    GLuint program = 0;
-    Sort sort = {0};
+    Painter *state = into;
+    state->passes = passes;
     Result result = targets_reserve(&passes->targets,
                                     (size_t)sort_bytes(passes->scene, passes->view, desc->sort));
     if (result == RESULT_OK)
-        result = sort_far_to_near(passes->scene, passes->view, desc->sort, &sort);
-    if (result == RESULT_OK)
         result = passes_program(passes, "painter", desc->back_light ? "#define BACK_LIGHT\n" : "",
-                                &source, &program);
+                                &source, &state->program);
+    return result;
+}
+
+static Result draw(void *of, Frame *out)
+{
+    const Painter *state = of;
+    Passes *passes = state->passes;
+    Sort sort = {0};
+    Result result = sort_far_to_near(passes->scene, passes->view, passes->desc->sort, &sort);
     if (result == RESULT_OK)
         result = passes_opaque(passes);
     if (result == RESULT_OK)
-        result = paint(passes, program, &sort, out);
+        result = paint(passes, state->program, &sort, out);
     if (result == RESULT_OK)
         result = passes_trace_accum(passes, "painter.layers", 1);
     if (result == RESULT_OK)
         result = passes_finish(passes, out->peels);
-    gl.DeleteProgram(program);
     sort_free(&sort);
     return result;
 }
+
+static void destroy(void *of)
+{
+    Painter *state = of;
+    gl.DeleteProgram(state->program);
+}
+
+const GlMethod gl_painter = {sizeof(Painter), create, draw, destroy};

@@ -3,7 +3,11 @@
  * This work is based on: L. Rapetta, "OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling";
  * C. Everitt, "Interactive Order-Independent Transparency", 2001. Opaque geometry is drawn once;
  * each peel is a geometry pass behind the previous one, shaded by a full-screen pass and blended
- * under what is in front of it; the opaque surfaces are shaded last. */
+ * under what is in front of it; the opaque surfaces are shaded last.
+ *
+ * Forward peeling (Everitt 2001; L. Bavoil, K. Myers, "Order Independent Transparency with Dual
+ * Depth Peeling", NVIDIA, 2008) has the same passes and other shaders: shaders/forward.frag.glsl
+ * stores lit colours, and shaders/compose.frag.glsl blends them as they are. */
 #include "methods/methods.h"
 
 #include "base/memory.h"
@@ -23,11 +27,12 @@ typedef struct Peel {
     void *material;
 } Peel;
 
-static Result make(Peel *state)
+static Result create(Passes *passes, void *into)
 {
-    Passes *passes = state->passes;
+    Peel *state = into;
     const RenderDesc *desc = passes->desc;
     size_t pixels = (size_t)desc->width * (size_t)desc->height;
+    state->passes = passes;
     Result result =
         passes_geometry_program(passes, "first peel", "#define TRANSPARENT\n", &state->first);
     if (result == RESULT_OK)
@@ -47,8 +52,9 @@ static Result make(Peel *state)
     return state->depth[0] && state->depth[1] && state->material ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
-static void destroy(Peel *state)
+static void destroy(void *of)
 {
+    Peel *state = of;
     gl.DeleteProgram(state->first);
     gl.DeleteProgram(state->next);
     targets_destroy_layer(&state->layers[1], true);
@@ -84,7 +90,7 @@ static void count_repeats(const Peel *state, int peel, uint64_t *repeated, uint6
     }
 }
 
-/* *samples: fragments that passed, 0 when nothing is left to peel. */
+/* *samples: fragments that passed, 0 when nothing is left to peel; NULL: not counted. */
 static Result draw_peel(Peel *state, int peel, uint64_t *samples)
 {
     const Passes *passes = state->passes;
@@ -115,14 +121,15 @@ static Result run_peel(void *context, int peel, bool *more)
 {
     Peel *state = context;
     const Passes *passes = state->passes;
+    const bool every = passes->options.every_pass;
     uint64_t samples = 0;
     *more = false;
     progress_add();
     state->frame->geometry_passes++;
-    Result result = draw_peel(state, peel, &samples);
-    if (result != RESULT_OK || samples == 0)
+    Result result = draw_peel(state, peel, every ? NULL : &samples);
+    if (result != RESULT_OK || (samples == 0 && !every))
         return result;
-    if (passes->desc->peel_test == PEEL_TEST_RAW) {
+    if (passes->desc->peel_test == PEEL_TEST_RAW && !every) {
         uint64_t repeated, fresh;
         count_repeats(state, peel, &repeated, &fresh);
         if (passes->desc->passes == 0 && fresh == 0)
@@ -135,16 +142,16 @@ static Result run_peel(void *context, int peel, bool *more)
     return passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-Result gl_peel(Passes *passes, Frame *out)
+static Result draw(void *of, Frame *out)
 {
-    Peel state = {.passes = passes, .frame = out};
-    Result result = make(&state);
+    Peel *state = of;
+    Passes *passes = state->passes;
+    state->frame = out;
+    Result result = passes_opaque(passes);
     if (result == RESULT_OK)
-        result = passes_opaque(passes);
-    if (result == RESULT_OK)
-        result = passes_peels(passes, run_peel, &state);
-    if (result == RESULT_OK)
-        result = passes_finish(passes, out->peels);
-    destroy(&state);
-    return result;
+        result = passes_peels(passes, run_peel, state);
+    return result == RESULT_OK ? passes_finish(passes, out->peels) : result;
 }
+
+const GlMethod gl_peel = {sizeof(Peel), create, draw, destroy};
+const GlMethod gl_forward = {sizeof(Peel), create, draw, destroy};

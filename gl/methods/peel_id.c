@@ -54,9 +54,11 @@ static Result build_programs(PeelId *state)
     return result;
 }
 
-static Result make(PeelId *state)
+static Result create(Passes *passes, void *into)
 {
-    Targets *targets = &state->passes->targets;
+    PeelId *state = into;
+    Targets *targets = &passes->targets;
+    state->passes = passes;
     Result result = build_programs(state);
     for (int i = 0; i < 2 && result == RESULT_OK; i++) {
         result = targets_layer(targets, i ? &state->layers[0] : NULL, &state->layers[i]);
@@ -68,13 +70,14 @@ static Result make(PeelId *state)
             result = targets_framebuffer(1, &state->rank[i], 0, &state->rank_buffer[i]);
     }
     if (result == RESULT_OK && targets->depth_format == FORMAT_D24 &&
-        state->passes->desc->depth_range == DEPTH_RANGE_REVERSED)
+        passes->desc->depth_range == DEPTH_RANGE_REVERSED)
         result = targets_texture(targets, FORMAT_R32UI, &state->previous_code);
     return result;
 }
 
-static void destroy(PeelId *state)
+static void destroy(void *of)
 {
+    PeelId *state = of;
     for (int i = 0; i < 2; i++) {
         gl.DeleteProgram(state->depth[i]);
         gl.DeleteProgram(state->select[i]);
@@ -91,7 +94,7 @@ static void destroy(PeelId *state)
 /* ---- the three passes ---- */
 
 /* The transparent draws to framebuffer, depth test on. */
-static void draw(const PeelId *state, GLuint program, GLuint framebuffer)
+static void draw_triangles(const PeelId *state, GLuint program, GLuint framebuffer)
 {
     const View *view = state->passes->view;
     progress_add();
@@ -123,8 +126,8 @@ static Result bind_previous(const PeelId *state, int peel)
     return result;
 }
 
-/* *samples: fragments that passed, 0 when nothing is left to peel. Whichever function desc has:
- * fragments of one depth are told apart later. */
+/* *samples: fragments that passed, 0 when nothing is left to peel; NULL: not counted. Whichever
+ * function desc has: fragments of one depth are told apart later. */
 static Result draw_depth(PeelId *state, int peel, uint64_t *samples)
 {
     const Passes *passes = state->passes;
@@ -134,7 +137,7 @@ static Result draw_depth(PeelId *state, int peel, uint64_t *samples)
     passes_clear_layer(passes, &state->layers[peel & 1]);
     passes_depth_test(passes->desc, DEPTH_LEQUAL);
     passes_begin_count(passes);
-    draw(state, state->depth[peel > 0], state->depth_buffer[peel & 1]);
+    draw_triangles(state, state->depth[peel > 0], state->depth_buffer[peel & 1]);
     return passes_end_count(passes, "depth pass", samples);
 }
 
@@ -145,10 +148,10 @@ static void draw_selected(PeelId *state, int peel)
     gl.DepthFunc(GL_EQUAL);
     gl.ClearNamedFramebufferuiv(state->rank_buffer[at], GL_COLOR, 0, none);
     gl.BindImageTexture(0, state->rank[at], 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-    draw(state, state->select[peel > 0], state->depth_buffer[at]);
+    draw_triangles(state, state->select[peel > 0], state->depth_buffer[at]);
     gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
     gl.BindTextureUnit(5, state->rank[at]);
-    draw(state, state->gbuffer, state->layers[at].buffer);
+    draw_triangles(state, state->gbuffer, state->layers[at].buffer);
     passes_depth_test(state->passes->desc, state->passes->desc->depth_func);
 }
 
@@ -182,9 +185,10 @@ static Result trace_peel(const PeelId *state, int peel)
 static Result run_peel(void *context, int peel, bool *more)
 {
     PeelId *state = context;
+    const bool every = state->passes->options.every_pass;
     uint64_t samples = 0;
-    Result result = draw_depth(state, peel, &samples);
-    *more = result == RESULT_OK && samples > 0;
+    Result result = draw_depth(state, peel, every ? NULL : &samples);
+    *more = result == RESULT_OK && (samples > 0 || every);
     if (!*more)
         return result;
     draw_selected(state, peel);
@@ -193,16 +197,15 @@ static Result run_peel(void *context, int peel, bool *more)
     return state->passes->trace ? trace_peel(state, peel) : RESULT_OK;
 }
 
-Result gl_peel_id(Passes *passes, Frame *out)
+static Result draw(void *of, Frame *out)
 {
-    PeelId state = {.passes = passes, .frame = out};
-    Result result = make(&state);
+    PeelId *state = of;
+    Passes *passes = state->passes;
+    state->frame = out;
+    Result result = passes_opaque(passes);
     if (result == RESULT_OK)
-        result = passes_opaque(passes);
-    if (result == RESULT_OK)
-        result = passes_peels(passes, run_peel, &state);
-    if (result == RESULT_OK)
-        result = passes_finish(passes, out->peels);
-    destroy(&state);
-    return result;
+        result = passes_peels(passes, run_peel, state);
+    return result == RESULT_OK ? passes_finish(passes, out->peels) : result;
 }
+
+const GlMethod gl_peel_id = {sizeof(PeelId), create, draw, destroy};

@@ -7,12 +7,14 @@
 #include "program.h"
 #include "sums.h"
 
-Result gl_weighted_average(Passes *passes, Frame *out)
+static Result create(Passes *passes, void *state)
 {
     const SumsMethod method = {.name = "weighted-average",
                                .second = "count",
                                .source = GL_ONE,
                                .destination = GL_ONE,
                                .shader = shader_weighted_average_frag};
-    return sums_draw(passes, out, &method);
+    return sums_create(passes, &method, state);
 }
+
+const GlMethod gl_weighted_average = {sizeof(Sums), create, sums_draw, sums_destroy};

@@ -9,7 +9,7 @@
 
 #include <stdio.h>
 
-Result gl_weighted_blended(Passes *passes, Frame *out)
+static Result create(Passes *passes, void *state)
 {
     static const int equations[] = {
         [WEIGHT_9] = 9, [WEIGHT_7] = 7, [WEIGHT_8] = 8, [WEIGHT_10] = 10};
@@ -21,5 +21,7 @@ Result gl_weighted_blended(Passes *passes, Frame *out)
                          .shader = shader_weighted_blended_frag};
     snprintf(method.defines, sizeof method.defines, "#define WEIGHT %d\n",
              equations[passes->desc->weight]);
-    return sums_draw(passes, out, &method);
+    return sums_create(passes, &method, state);
 }
+
+const GlMethod gl_weighted_blended = {sizeof(Sums), create, sums_draw, sums_destroy};

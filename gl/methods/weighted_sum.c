@@ -7,9 +7,11 @@
 #include "program.h"
 #include "sums.h"
 
-Result gl_weighted_sum(Passes *passes, Frame *out)
+static Result create(Passes *passes, void *state)
 {
     const SumsMethod method = {
         .name = "weighted-sum", .second = "", .shader = shader_weighted_sum_frag};
-    return sums_draw(passes, out, &method);
+    return sums_create(passes, &method, state);
 }
+
+const GlMethod gl_weighted_sum = {sizeof(Sums), create, sums_draw, sums_destroy};

@@ -14,6 +14,11 @@ Clock clock_now(void)
     return (Clock){milliseconds(CLOCK_MONOTONIC), milliseconds(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
+double clock_thread_ms(void)
+{
+    return milliseconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
 void clock_elapsed(const Clock *start, double *wall_ms, double *cpu_ms)
 {
     Clock now = clock_now();

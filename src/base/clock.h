@@ -6,7 +6,8 @@ typedef struct Clock {
     double wall_ms, cpu_ms;
 } Clock;
 
-Clock clock_now(void); /* cpu: user and system time of all threads of the process */
+Clock clock_now(void);        /* cpu: user and system time of all threads of the process */
+double clock_thread_ms(void); /* of the calling thread, from some start */
 void clock_elapsed(const Clock *start, double *wall_ms, double *cpu_ms);
 
 #endif

@@ -3,14 +3,18 @@
 #define PEEL_CLI_BIND_H
 
 #include "frame/frame.h"
+#include "study/bench.h"
 #include "study/threeway.h"
 
 extern const Renderer bind_renderers[RENDERER_COUNT]; /* in the order of RENDERER_… */
+
+extern const BenchRenderer bind_bench[BENCH_RENDERERS];
 
 /* RENDERER_… by name, −1 when there is none. */
 int bind_find_renderer(const char *name);
 
 /* argv[0] is "peel <command>"; returns the exit code. */
+int cmd_bench(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 int cmd_driver(int argc, char **argv);

@@ -1,5 +1,4 @@
 /* peel compare: all three renderers on one scene. */
-#include "base/file.h"
 #include "base/progress.h"
 #include "cli/bind.h"
 #include "cli/options.h"
@@ -9,12 +8,8 @@
 #include "report/html.h"
 #include "report/table.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 typedef struct CompareCommand {
     RenderOptions render;
@@ -102,42 +97,6 @@ static const struct argp command_argp = {
     NULL,
     NULL};
 
-/* The command as a shell would take it again. */
-static char *command_line(int argc, char **argv)
-{
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        return NULL;
-    fprintf(out, "build/%s", argv[0]);
-    for (int i = 1; i < argc; i++) {
-        bool plain = argv[i][0] != '\0';
-        for (const char *c = argv[i]; *c; c++)
-            plain &= isalnum((unsigned char)*c) || strchr("_-./=,:+%@", *c) != NULL;
-        if (plain) {
-            fprintf(out, " %s", argv[i]);
-            continue;
-        }
-        fputs(" '", out);
-        for (const char *c = argv[i]; *c; c++)
-            *c == '\'' ? (void)fputs("'\\''", out) : (void)fputc(*c, out);
-        fputc('\'', out);
-    }
-    fclose(out);
-    return text;
-}
-
-/* Made, and found writable, before minutes of work and not after. */
-static Result open_directory(const char *path)
-{
-    Result result = file_make_directories(path);
-    if (result == RESULT_OK && access(path, W_OK) != 0)
-        result =
-            result_fail(RESULT_IO, "%s: cannot write to this directory: %s", path, strerror(errno));
-    return result;
-}
-
 /* The same failure, with the method in its message. */
 static Result name_method(Result result, MethodId id)
 {
@@ -180,7 +139,7 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
     size_t count = 0;
     if (command->budget)
         return result_fail(RESULT_BAD_INPUT, "--budget: expected a single --method");
-    Result result = command->report ? open_directory(command->report) : RESULT_OK;
+    Result result = command->report ? options_open_directory(command->report) : RESULT_OK;
     if (result == RESULT_OK)
         result = options_check_output(command->json);
     if (result == RESULT_OK)
@@ -228,7 +187,7 @@ static Result explain(const CompareCommand *command, const Scene *scene, Threewa
 
 static Result compare(const CompareCommand *command, const Scene *scene, Threeway *report)
 {
-    Result result = command->report ? open_directory(command->report) : RESULT_OK;
+    Result result = command->report ? options_open_directory(command->report) : RESULT_OK;
     if (result == RESULT_OK)
         result = options_check_output(command->json);
     if (result == RESULT_OK)
@@ -259,7 +218,7 @@ static Result compare(const CompareCommand *command, const Scene *scene, Threewa
 int cmd_compare(int argc, char **argv)
 {
     CompareCommand command = {.render = options_default(), .tolerance = -1.0};
-    command.line = command_line(argc, argv);
+    command.line = options_command_line(argc, argv);
     int code = options_parse(&command_argp, argc, argv, &command);
     if (code) {
         free(command.line);

@@ -1,9 +1,11 @@
 #include "cli/options.h"
 
+#include "base/file.h"
 #include "gl/gl_renderer.h"
 #include "scene/generate.h"
 #include "scene/gltf.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <libgen.h>
 #include <stdarg.h>
@@ -95,6 +97,18 @@ bool options_real(const char *text, double low, double high, double *out)
         return false;
     *out = value;
     return true;
+}
+
+error_t options_list(const char *name, const char *text,
+                     error_t (*item)(const char *part, void *context), void *context)
+{
+    char *copy = strdup(text), *rest = copy, *part;
+    error_t error = copy ? 0 : options_error("%s: out of memory", name);
+    while (error == 0 && (part = strsep(&rest, ",")))
+        error = *part ? item(part, context)
+                      : options_error("%s '%s': expected values with commas between", name, text);
+    free(copy);
+    return error;
 }
 
 bool options_has_extension(const char *path, const char *extension)
@@ -257,4 +271,38 @@ Result options_check_output(const char *path)
     free(copy);
     return error ? result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error))
                  : RESULT_OK;
+}
+
+Result options_open_directory(const char *path)
+{
+    Result result = file_make_directories(path);
+    if (result == RESULT_OK && access(path, W_OK) != 0)
+        result =
+            result_fail(RESULT_IO, "%s: cannot write to this directory: %s", path, strerror(errno));
+    return result;
+}
+
+char *options_command_line(int argc, char **argv)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fprintf(out, "build/%s", argv[0]);
+    for (int i = 1; i < argc; i++) {
+        bool plain = argv[i][0] != '\0';
+        for (const char *c = argv[i]; *c; c++)
+            plain &= isalnum((unsigned char)*c) || strchr("_-./=,:+%@", *c) != NULL;
+        if (plain) {
+            fprintf(out, " %s", argv[i]);
+            continue;
+        }
+        fputs(" '", out);
+        for (const char *c = argv[i]; *c; c++)
+            *c == '\'' ? (void)fputs("'\\''", out) : (void)fputc(*c, out);
+        fputc('\'', out);
+    }
+    fclose(out);
+    return text;
 }

@@ -34,8 +34,11 @@ typedef struct RenderOptions {
         gbuffer, position, depth, accum, sort, weight, post, simd;
 } RenderOptions;
 
-/* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */
+/* Child parsers; their input is a RenderOptions. The first takes SCENE as its argument; the other
+ * has none, and all options but those that a benchmark has lists of: size, lights, method, passes,
+ * threads. */
 extern const struct argp options_render_argp;
+extern const struct argp options_settings_argp;
 
 /* The defaults of the command line: 1280×720. */
 RenderOptions options_default(void);
@@ -58,9 +61,20 @@ bool options_real(const char *text, double low, double high, double *out);
  * the process. */
 #define OPTIONS_GL_HELP "Where OpenGL comes from: osmesa (default) or egl"
 error_t options_gl(const char *text);
+error_t options_size(const char *text, RenderDesc *out);
+error_t options_lights(const char *text, RenderDesc *out);
+error_t options_method(const char *text, RenderDesc *out);
+error_t options_passes(const char *text, RenderDesc *out);
+enum {
+    OPTIONS_THREADS_MAX = 256
+};
 error_t options_fma(const char *text, FmaChoice *out);
 error_t options_count(const char *name, const char *text, int low, int high, int *out);
 error_t options_memory(const char *text, size_t *out);
+
+/* Gives every part of text between commas to item; the first error ends it. name: of the option. */
+error_t options_list(const char *name, const char *text,
+                     error_t (*item)(const char *part, void *context), void *context);
 
 /* Whether path has a name that ends so: ".png". */
 bool options_has_extension(const char *path, const char *extension);
@@ -77,6 +91,12 @@ Result options_check_fma(const RenderOptions *options);
 
 /* Whether a file can be made or replaced at path (NULL is fine): found out before the work. */
 Result options_check_output(const char *path);
+
+/* Makes a directory, and finds it writable, before minutes of work and not after. */
+Result options_open_directory(const char *path);
+
+/* The command as a shell would take it again; NULL when memory is exhausted. The caller frees. */
+char *options_command_line(int argc, char **argv);
 
 /* Prints "peel: <message>" and returns EXIT_BAD_INPUT. */
 int options_fail(Result result);

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static error_t parse_size(const char *text, RenderDesc *desc)
+error_t options_size(const char *text, RenderDesc *desc)
 {
     char *end;
     bool digits = strspn(text, "0123456789x") == strlen(text);
@@ -105,18 +105,12 @@ enum {
     KEY_MEMORY,
 };
 
-static const struct argp_option render_options[] = {
-    {0, 0, 0, 0, "Rendering:", 1},
-    {"size", KEY_SIZE, "WxH", 0, "Image size in pixels (default 1280x720)", 1},
+static const struct argp_option settings[] = {
+    {0, 0, 0, 0, "Settings:", 1},
     {"camera", KEY_CAMERA, "NAME|INDEX", 0, "Camera of the scene (default the first)", 1},
-    {"lights", KEY_LIGHTS, "N", 0, "The scene's first N lights (default all)", 1},
     {"time", KEY_TIME, "SECONDS", 0, "Turns the lights (default 0)", 1},
     {"opacity", KEY_OPACITY, "A", 0, "Opacity 0 to 1 of every material; below 1 all are peeled", 1},
     {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)", 1},
-    {"method", KEY_METHOD, "NAME", 0,
-     "Transparency method (default peel; compare also takes all); see 'peel methods'", 1},
-    {"passes", KEY_PASSES, "N|auto", 0,
-     "At most N peels; auto (default) until a peel yields no fragment", 1},
     {"profile", KEY_PROFILE, "NAME", 0,
      "default, or seed: the number formats and choices of the original program", 1},
     {"cull", KEY_CULL, "MODE", 0,
@@ -176,8 +170,19 @@ static const struct argp_option render_options[] = {
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
     {"tile", KEY_TILE, "N", 0,
      "Pixels a side of ref's tiles: a power of two, 8 to 256 (default 64); same bits", 1},
-    {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
     {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
+    {0},
+};
+
+static const struct argp_option render_options[] = {
+    {0, 0, 0, 0, "Rendering:", 1},
+    {"size", KEY_SIZE, "WxH", 0, "Image size in pixels (default 1280x720)", 1},
+    {"lights", KEY_LIGHTS, "N", 0, "The scene's first N lights (default all)", 1},
+    {"method", KEY_METHOD, "NAME", 0,
+     "Transparency method (default peel; compare also takes all); see 'peel methods'", 1},
+    {"passes", KEY_PASSES, "N|auto", 0,
+     "At most N peels; auto (default) until a peel yields no fragment", 1},
+    {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
     {0},
 };
 
@@ -189,7 +194,7 @@ static error_t parse_tile(const char *text, int *out)
     return error;
 }
 
-static error_t parse_passes(const char *text, RenderDesc *desc)
+error_t options_passes(const char *text, RenderDesc *desc)
 {
     desc->passes = 0;
     if (strcmp(text, "auto") == 0)
@@ -245,19 +250,24 @@ error_t options_gl(const char *text)
 
 static error_t parse_method(const char *text, RenderOptions *options)
 {
-    const MethodInfo *method = method_find(text);
     options->all_methods = strcmp(text, "all") == 0;
-    if (method)
-        options->desc.method = method->id;
-    if (method || options->all_methods)
+    return options->all_methods ? 0 : options_method(text, &options->desc);
+}
+
+error_t options_method(const char *text, RenderDesc *desc)
+{
+    const MethodInfo *method = method_find(text);
+    if (method) {
+        desc->method = method->id;
         return 0;
+    }
     char expected[256] = "";
     for (int i = 0; i < METHOD_COUNT; i++)
         append_name(expected, sizeof expected, i, METHOD_COUNT, method_info((MethodId)i)->name);
     return options_error("--method %s: expected %s", text, expected);
 }
 
-static error_t parse_lights(const char *text, RenderDesc *desc)
+error_t options_lights(const char *text, RenderDesc *desc)
 {
     error_t error = options_count("--lights", text, 0, 1 << 20, &desc->lights);
     if (desc->lights == 0)
@@ -340,18 +350,14 @@ static error_t parse_bias(const char *text, RenderDesc *desc)
     return error;
 }
 
-static error_t parse_render(int key, char *argument, struct argp_state *state)
+static error_t parse_settings(int key, char *argument, struct argp_state *state)
 {
     RenderOptions *options = state->input;
     RenderDesc *desc = &options->desc;
     switch (key) {
-    case KEY_SIZE:
-        return parse_size(argument, desc);
     case KEY_CAMERA:
         options->camera = argument;
         return 0;
-    case KEY_LIGHTS:
-        return parse_lights(argument, desc);
     case KEY_TIME:
         return parse_real("--time", argument, -1e6, 1e6, &desc->time);
     case KEY_OPACITY:
@@ -359,10 +365,6 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         return parse_real("--opacity", argument, 0.0, 1.0, &options->opacity);
     case KEY_BACKGROUND:
         return parse_background(argument, options);
-    case KEY_METHOD:
-        return parse_method(argument, options);
-    case KEY_PASSES:
-        return parse_passes(argument, desc);
     case KEY_BIAS:
         return parse_bias(argument, desc);
     case KEY_DRAW_ORDER:
@@ -375,10 +377,28 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         return options_gl(argument);
     case KEY_TILE:
         return parse_tile(argument, &desc->tile);
-    case KEY_THREADS:
-        return options_count("--threads", argument, 1, 256, &desc->threads);
     case KEY_MEMORY:
         return options_memory(argument, &desc->max_memory);
+    default:
+        return parse_named(key, argument, options);
+    }
+}
+
+static error_t parse_render(int key, char *argument, struct argp_state *state)
+{
+    RenderOptions *options = state->input;
+    RenderDesc *desc = &options->desc;
+    switch (key) {
+    case KEY_SIZE:
+        return options_size(argument, desc);
+    case KEY_LIGHTS:
+        return options_lights(argument, desc);
+    case KEY_METHOD:
+        return parse_method(argument, options);
+    case KEY_PASSES:
+        return options_passes(argument, desc);
+    case KEY_THREADS:
+        return options_count("--threads", argument, 1, OPTIONS_THREADS_MAX, &desc->threads);
     case ARGP_KEY_ARG:
         if (options->scene_path)
             return options_error("'%s': expected one scene, already given as '%s'", argument,
@@ -390,10 +410,17 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
             return options_error("no scene given; expected a .gltf or .glb file or the name of a "
                                  "built-in scene");
         return 0;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = options;
+        return 0;
     default:
-        return parse_named(key, argument, options);
+        return ARGP_ERR_UNKNOWN;
     }
 }
 
-const struct argp options_render_argp = {render_options, parse_render, NULL, NULL,
-                                         NULL,           NULL,         NULL};
+const struct argp options_settings_argp = {settings, parse_settings, NULL, NULL, NULL, NULL, NULL};
+
+static const struct argp_child render_children[] = {{&options_settings_argp, 0, NULL, 1}, {0}};
+
+const struct argp options_render_argp = {render_options,  parse_render, NULL, NULL,
+                                         render_children, NULL,         NULL};

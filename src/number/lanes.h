@@ -60,6 +60,10 @@ static inline Lanes lanes_neg(Lanes a)
     return -a;
 }
 #define LANES_NEG   lanes_neg
+/* One rounding; only where the instruction set has it. Shading never fuses. */
+#if LANES >= 8
+#define LANES_FMA LANES_CALL(fmadd_ps)
+#endif
 
 #endif
 
