@@ -58,13 +58,9 @@ static Vertex cut_edge(const Viewport *viewport, float t, const Vertex *from, co
     Vertex cut = {.outcode = 0};
     for (int i = 0; i < 4; i++)
         cut.clip[i] = op_add(from->clip[i], op_mul(t, op_sub(to->clip[i], from->clip[i])));
-    for (int i = 0; i < 3; i++) {
-        cut.position[i] =
-            op_add(from->position[i], op_mul(t, op_sub(to->position[i], from->position[i])));
-        cut.normal[i] = op_add(from->normal[i], op_mul(t, op_sub(to->normal[i], from->normal[i])));
-    }
-    for (int i = 0; i < 2; i++)
-        cut.uv[i] = op_add(from->uv[i], op_mul(t, op_sub(to->uv[i], from->uv[i])));
+    for (int i = 0; i < VARYINGS; i++)
+        cut.varying[i] =
+            op_add(from->varying[i], op_mul(t, op_sub(to->varying[i], from->varying[i])));
     viewport_transform(viewport, true, &cut);
     return cut;
 }

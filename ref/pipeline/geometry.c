@@ -6,21 +6,33 @@
 
 #include <stdlib.h>
 
-/* What one draw contributes; concatenated in draw order when all are done. */
-typedef struct DrawOutput {
-    size_t first_vertex; /* of its transformed mesh vertices in Geometry.vertices */
-    Vertex *cut;         /* vertices that the clipper made */
+enum {
+    CHUNK = 8192 /* vertices or triangles of a task */
+};
+
+/* Some vertices or triangles of one draw. */
+typedef struct Chunk {
+    uint32_t draw, first, count;
+    size_t first_vertex; /* of the draw's transformed mesh vertices in Geometry.vertices */
+} Chunk;
+
+/* What one chunk of triangles contributes; concatenated in draw order when all are done. */
+typedef struct ChunkOutput {
+    Vertex *cut; /* vertices that the clipper made */
     size_t cut_count, cut_capacity;
     Primitive *primitives; /* vertex indices ≥ mesh_vertices mean cut[index − mesh_vertices] */
     size_t primitive_count, primitive_capacity;
-} DrawOutput;
+    size_t first_cut, first_primitive; /* where they go, in Geometry.vertices and the list */
+} ChunkOutput;
 
 typedef struct Build {
     const Scene *scene;
     const View *view;
     Viewport viewport;
     Geometry *geometry;
-    DrawOutput *outputs;
+    Chunk *vertex_chunks, *triangle_chunks;
+    ChunkOutput *outputs; /* one per chunk of triangles */
+    size_t vertex_chunk_count, triangle_chunk_count;
     size_t mesh_vertices; /* over all draws */
 } Build;
 
@@ -33,11 +45,12 @@ static void transform_point(const float m[16], const float v[3], int rows, float
             m[12 + r]);
 }
 
-static void transform_vertices(const Build *build, const Draw *draw, size_t first)
+static __attribute__((noinline)) void transform_vertices(const Build *build, const Chunk *chunk)
 {
+    const Draw *draw = &build->view->draws[chunk->draw];
     const Mesh *mesh = &build->scene->meshes[draw->mesh];
-    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        Vertex *vertex = &build->geometry->vertices[first + i];
+    for (uint32_t i = chunk->first; i < chunk->first + chunk->count; i++) {
+        Vertex *vertex = &build->geometry->vertices[chunk->first_vertex + i];
         transform_point(draw->model_view, &mesh->position[3 * (size_t)i], 3, vertex->position);
         transform_point(build->view->projection, vertex->position, 4, vertex->clip);
         const float *n = &mesh->normal[3 * (size_t)i], *m = draw->normal_matrix;
@@ -51,7 +64,7 @@ static void transform_vertices(const Build *build, const Draw *draw, size_t firs
     }
 }
 
-static Result emit(const Build *build, DrawOutput *output, const Vertex *const corners[3],
+static Result emit(const Build *build, ChunkOutput *output, const Vertex *const corners[3],
                    Primitive primitive)
 {
     const Draw *draw = &build->view->draws[primitive.draw];
@@ -62,14 +75,17 @@ static Result emit(const Build *build, DrawOutput *output, const Vertex *const c
     primitive.swap = (facing == FACING_FRONT) != draw->flipped;
     if (primitive.box.x0 > primitive.box.x1 || primitive.box.y0 > primitive.box.y1)
         return RESULT_OK;
-    Result result = memory_grow((void **)&output->primitives, &output->primitive_capacity,
-                                output->primitive_count + 1, sizeof primitive);
-    if (result == RESULT_OK)
-        output->primitives[output->primitive_count++] = primitive;
-    return result;
+    if (output->primitive_count == output->primitive_capacity) {
+        Result result = memory_grow((void **)&output->primitives, &output->primitive_capacity,
+                                    output->primitive_count + 1, sizeof primitive);
+        if (result != RESULT_OK)
+            return result;
+    }
+    output->primitives[output->primitive_count++] = primitive;
+    return RESULT_OK;
 }
 
-static Result emit_clipped(const Build *build, DrawOutput *output, const Vertex *const corners[3],
+static Result emit_clipped(const Build *build, ChunkOutput *output, const Vertex *const corners[3],
                            unsigned planes, const Primitive *whole)
 {
     ClipVertex polygon[CLIP_VERTICES_MAX];
@@ -101,17 +117,22 @@ static Result emit_clipped(const Build *build, DrawOutput *output, const Vertex 
     return RESULT_OK;
 }
 
-static Result assemble(const Build *build, uint32_t draw_index, DrawOutput *output)
+static __attribute__((noinline)) Result assemble(const Build *build, const Chunk *chunk,
+                                                 ChunkOutput *output)
 {
-    const Draw *draw = &build->view->draws[draw_index];
+    const Draw *draw = &build->view->draws[chunk->draw];
     const Mesh *mesh = &build->scene->meshes[draw->mesh];
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        Primitive primitive = {.id = draw->first_primitive + t, .draw = draw_index};
+    Result room = memory_grow((void **)&output->primitives, &output->primitive_capacity,
+                              chunk->count, sizeof *output->primitives);
+    if (room != RESULT_OK)
+        return room;
+    for (uint32_t t = chunk->first; t < chunk->first + chunk->count; t++) {
+        Primitive primitive = {.id = draw->first_primitive + t, .draw = chunk->draw};
         const Vertex *corners[3];
         unsigned any = 0, all = ~0u;
         for (int i = 0; i < 3; i++) {
             primitive.vertex[i] =
-                (uint32_t)(output->first_vertex + mesh->index[3 * (size_t)t + (size_t)i]);
+                (uint32_t)(chunk->first_vertex + mesh->index[3 * (size_t)t + (size_t)i]);
             corners[i] = &build->geometry->vertices[primitive.vertex[i]];
             any |= corners[i]->outcode;
             all &= corners[i]->outcode;
@@ -126,82 +147,135 @@ static Result assemble(const Build *build, uint32_t draw_index, DrawOutput *outp
     return RESULT_OK;
 }
 
-static __attribute__((noinline)) Result process_draw(const Build *build, uint32_t index)
-{
-    DrawOutput *output = &build->outputs[index];
-    transform_vertices(build, &build->view->draws[index], output->first_vertex);
-    return assemble(build, index, output);
-}
-
-static Result draw_task(void *context, uint32_t index, int worker)
+static Result vertex_task(void *context, uint32_t index, int worker)
 {
     (void)worker;
+    const Build *build = context;
     uint32_t saved = op_enter();
-    Result result = process_draw(context, index);
+    transform_vertices(build, &build->vertex_chunks[index]);
+    op_leave(saved);
+    return RESULT_OK;
+}
+
+static Result triangle_task(void *context, uint32_t index, int worker)
+{
+    (void)worker;
+    const Build *build = context;
+    uint32_t saved = op_enter();
+    Result result = assemble(build, &build->triangle_chunks[index], &build->outputs[index]);
     op_leave(saved);
     return result;
 }
 
-/* Appends the draws' cut vertices to the vertex array and their primitives to the two lists. */
-static Result concatenate(Build *build)
+static PrimitiveList *list_of(const Build *build, uint32_t chunk)
+{
+    bool transparent = build->view->draws[build->triangle_chunks[chunk].draw].transparent;
+    return transparent ? &build->geometry->transparent : &build->geometry->opaque;
+}
+
+/* Appends a chunk's cut vertices to the vertex array and its primitives to its list. */
+static Result copy_task(void *context, uint32_t index, int worker)
+{
+    (void)worker;
+    const Build *build = context;
+    ChunkOutput *output = &build->outputs[index];
+    Primitive *items = list_of(build, index)->items + output->first_primitive;
+    uint32_t shift = (uint32_t)(output->first_cut - build->mesh_vertices);
+    for (size_t p = 0; p < output->primitive_count; p++) {
+        items[p] = output->primitives[p];
+        for (int k = 0; k < 3; k++)
+            if (items[p].vertex[k] >= build->mesh_vertices)
+                items[p].vertex[k] += shift;
+    }
+    if (output->cut_count)
+        memcpy(&build->geometry->vertices[output->first_cut], output->cut,
+               output->cut_count * sizeof(Vertex));
+    return RESULT_OK;
+}
+
+/* Decides where every chunk's output goes, and makes room for it. */
+static Result place(Build *build)
 {
     Geometry *geometry = build->geometry;
-    const View *view = build->view;
-    size_t cut_total = 0;
-    for (size_t i = 0; i < view->draw_count; i++) {
-        cut_total += build->outputs[i].cut_count;
-        PrimitiveList *list =
-            view->draws[i].transparent ? &geometry->transparent : &geometry->opaque;
-        list->count += build->outputs[i].primitive_count;
+    geometry->vertex_count = build->mesh_vertices;
+    for (size_t i = 0; i < build->triangle_chunk_count; i++) {
+        ChunkOutput *output = &build->outputs[i];
+        PrimitiveList *list = list_of(build, (uint32_t)i);
+        output->first_cut = geometry->vertex_count;
+        output->first_primitive = list->count;
+        geometry->vertex_count += output->cut_count;
+        list->count += output->primitive_count;
     }
-    if (build->mesh_vertices + cut_total > UINT32_MAX)
+    if (geometry->vertex_count > UINT32_MAX)
         return result_fail(RESULT_UNSUPPORTED, "more than 2^32 − 1 vertices after clipping");
-    Vertex *vertices =
-        realloc(geometry->vertices, (build->mesh_vertices + cut_total + 1) * sizeof *vertices);
     geometry->opaque.items = memory_array(geometry->opaque.count, sizeof(Primitive));
     geometry->transparent.items = memory_array(geometry->transparent.count, sizeof(Primitive));
+    Vertex *vertices = geometry->vertices;
+    if (geometry->vertex_count > build->mesh_vertices)
+        vertices = realloc(vertices, geometry->vertex_count * sizeof *vertices);
     if (vertices)
         geometry->vertices = vertices;
     if (!vertices || !geometry->opaque.items || !geometry->transparent.items)
-        return result_fail(RESULT_NO_MEMORY, "out of memory: %zu vertices",
-                           build->mesh_vertices + cut_total);
-
-    geometry->vertex_count = build->mesh_vertices;
-    geometry->opaque.count = geometry->transparent.count = 0;
-    for (size_t i = 0; i < view->draw_count; i++) {
-        const DrawOutput *output = &build->outputs[i];
-        PrimitiveList *list =
-            view->draws[i].transparent ? &geometry->transparent : &geometry->opaque;
-        uint32_t shift = (uint32_t)(geometry->vertex_count - build->mesh_vertices);
-        for (size_t p = 0; p < output->primitive_count; p++) {
-            Primitive primitive = output->primitives[p];
-            for (int k = 0; k < 3; k++)
-                if (primitive.vertex[k] >= build->mesh_vertices)
-                    primitive.vertex[k] += shift;
-            list->items[list->count++] = primitive;
-        }
-        if (output->cut_count)
-            memcpy(&geometry->vertices[geometry->vertex_count], output->cut,
-                   output->cut_count * sizeof(Vertex));
-        geometry->vertex_count += output->cut_count;
-    }
+        return result_fail(RESULT_NO_MEMORY, "out of memory: %zu vertices", geometry->vertex_count);
     return RESULT_OK;
+}
+
+/* Appends the chunks of `count` vertices or triangles to chunks; NULL: only counts them. */
+static void add_chunks(uint32_t draw, uint32_t count, size_t first_vertex, Chunk *chunks,
+                       size_t *chunk_count)
+{
+    for (uint32_t first = 0; first < count; first += CHUNK) {
+        if (chunks)
+            chunks[*chunk_count] = (Chunk){
+                .draw = draw,
+                .first = first,
+                .count = count - first < CHUNK ? count - first : CHUNK,
+                .first_vertex = first_vertex,
+            };
+        ++*chunk_count;
+    }
+}
+
+static void cut_into_chunks(Build *build)
+{
+    const View *view = build->view;
+    build->vertex_chunk_count = build->triangle_chunk_count = build->mesh_vertices = 0;
+    for (size_t i = 0; i < view->draw_count; i++) {
+        const Mesh *mesh = &build->scene->meshes[view->draws[i].mesh];
+        add_chunks((uint32_t)i, mesh->vertex_count, build->mesh_vertices, build->vertex_chunks,
+                   &build->vertex_chunk_count);
+        add_chunks((uint32_t)i, mesh->triangle_count, build->mesh_vertices, build->triangle_chunks,
+                   &build->triangle_chunk_count);
+        build->mesh_vertices += mesh->vertex_count;
+    }
 }
 
 static Result allocate(Build *build)
 {
-    const View *view = build->view;
-    build->outputs = memory_array(view->draw_count, sizeof *build->outputs);
-    if (!build->outputs)
-        return RESULT_NO_MEMORY;
-    for (size_t i = 0; i < view->draw_count; i++) {
-        build->outputs[i].first_vertex = build->mesh_vertices;
-        build->mesh_vertices += build->scene->meshes[view->draws[i].mesh].vertex_count;
-    }
+    cut_into_chunks(build);
     if (build->mesh_vertices >= UINT32_MAX)
         return result_fail(RESULT_UNSUPPORTED, "more than 2^32 − 1 vertices");
+    build->vertex_chunks = memory_array(build->vertex_chunk_count, sizeof *build->vertex_chunks);
+    build->triangle_chunks =
+        memory_array(build->triangle_chunk_count, sizeof *build->triangle_chunks);
+    build->outputs = memory_array(build->triangle_chunk_count, sizeof *build->outputs);
     build->geometry->vertices = memory_array(build->mesh_vertices, sizeof(Vertex));
-    return build->geometry->vertices ? RESULT_OK : RESULT_NO_MEMORY;
+    if (!build->vertex_chunks || !build->triangle_chunks || !build->outputs ||
+        !build->geometry->vertices)
+        return RESULT_NO_MEMORY;
+    cut_into_chunks(build);
+    return RESULT_OK;
+}
+
+static void free_chunks(Build *build)
+{
+    for (size_t i = 0; build->outputs && i < build->triangle_chunk_count; i++) {
+        free(build->outputs[i].cut);
+        free(build->outputs[i].primitives);
+    }
+    free(build->outputs);
+    free(build->vertex_chunks);
+    free(build->triangle_chunks);
 }
 
 Result geometry_build(const Scene *scene, const View *view, bool fused, Pool *pool, Geometry *out)
@@ -214,15 +288,16 @@ Result geometry_build(const Scene *scene, const View *view, bool fused, Pool *po
         .geometry = out,
     };
     Result result = allocate(&build);
+    uint32_t triangle_chunks = (uint32_t)build.triangle_chunk_count;
     if (result == RESULT_OK)
-        result = pool_run(pool, (uint32_t)view->draw_count, draw_task, &build);
+        result = pool_run(pool, (uint32_t)build.vertex_chunk_count, vertex_task, &build);
     if (result == RESULT_OK)
-        result = concatenate(&build);
-    for (size_t i = 0; build.outputs && i < view->draw_count; i++) {
-        free(build.outputs[i].cut);
-        free(build.outputs[i].primitives);
-    }
-    free(build.outputs);
+        result = pool_run(pool, triangle_chunks, triangle_task, &build);
+    if (result == RESULT_OK)
+        result = place(&build);
+    if (result == RESULT_OK)
+        result = pool_run(pool, triangle_chunks, copy_task, &build);
+    free_chunks(&build);
     if (result != RESULT_OK)
         geometry_free(out);
     return result;

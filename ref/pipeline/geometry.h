@@ -11,13 +11,21 @@
 #include "base/pool.h"
 #include "frame/view.h"
 
+enum {
+    VARYINGS = 8
+};
+
 typedef struct Vertex {
     float clip[4];
     float window[4];            /* x, y, z, 1/w */
     int32_t x_fixed8, y_fixed8; /* window x − 0.5 and y − 0.5, in 1/256 pixel */
-    float position[3];          /* smooth varyings, view space */
-    float normal[3];
-    float uv[2];      /* 0 where the mesh has none */
+    union {
+        struct {
+            float position[3], normal[3]; /* view space */
+            float uv[2];                  /* 0 where the mesh has none */
+        };
+        float varying[VARYINGS]; /* all that is interpolated */
+    };
     uint32_t outcode; /* clip_outcode; 0 of a vertex that the clipper made */
 } Vertex;
 

@@ -1,7 +1,6 @@
 #include "ref/pipeline/pass.h"
 
 #include "base/memory.h"
-#include "frame/shading.h"
 
 #include <stdlib.h>
 
@@ -17,34 +16,87 @@ static TileRange tiles_of(const Pass *pass, const Primitive *primitive)
                        (uint32_t)box->y1 / tile};
 }
 
-/* Counting sort by tile: counts, prefix sums, then the indices in draw order. */
+/* Counting sort by tile of a list cut into chunks: each counts its primitives per tile, prefix sums
+ * in order of tile and chunk turn counts into places, and each puts its indices there. */
+typedef struct Binning {
+    Pass *pass;
+    const PrimitiveList *list;
+    Bins *bins;
+    uint32_t chunks;
+    size_t *places; /* per chunk, per tile */
+} Binning;
+
+enum {
+    BINNING_CHUNKS = 16
+};
+
+static void bin_chunk(const Binning *binning, uint32_t chunk, bool put)
+{
+    const Pass *pass = binning->pass;
+    size_t *places = binning->places + (size_t)chunk * pass->tile_count;
+    size_t end = binning->list->count * (chunk + 1) / binning->chunks;
+    for (size_t i = binning->list->count * chunk / binning->chunks; i < end; i++) {
+        TileRange r = tiles_of(pass, &binning->list->items[i]);
+        for (uint32_t y = r.y0; y <= r.y1; y++)
+            for (uint32_t x = r.x0; x <= r.x1; x++) {
+                size_t place = places[y * pass->tile_columns + x]++;
+                if (put)
+                    binning->bins->item[place] = (uint32_t)i;
+            }
+    }
+}
+
+static Result count_chunk(void *context, uint32_t chunk, int worker)
+{
+    (void)worker;
+    bin_chunk(context, chunk, false);
+    return RESULT_OK;
+}
+
+static Result put_chunk(void *context, uint32_t chunk, int worker)
+{
+    (void)worker;
+    bin_chunk(context, chunk, true);
+    return RESULT_OK;
+}
+
+static void count_to_place(const Binning *binning)
+{
+    uint32_t tiles = binning->pass->tile_count;
+    size_t sum = 0;
+    for (uint32_t tile = 0; tile < tiles; tile++) {
+        binning->bins->first[tile] = sum;
+        for (uint32_t chunk = 0; chunk < binning->chunks; chunk++) {
+            size_t *place = &binning->places[(size_t)chunk * tiles + tile], count = *place;
+            *place = sum;
+            sum += count;
+        }
+    }
+    binning->bins->first[tiles] = sum;
+}
+
 static Result bin(Pass *pass, const PrimitiveList *list, Bins *out)
 {
-    out->first = memory_array(pass->tile_count + (size_t)2, sizeof *out->first);
-    if (!out->first)
-        return RESULT_NO_MEMORY;
-    size_t *next = out->first + 1; /* next[t] ends up as first[t + 1] */
-    for (size_t i = 0; i < list->count; i++) {
-        TileRange r = tiles_of(pass, &list->items[i]);
-        for (uint32_t y = r.y0; y <= r.y1; y++)
-            for (uint32_t x = r.x0; x <= r.x1; x++)
-                next[y * pass->tile_columns + x + 1]++;
+    Binning binning = {.pass = pass, .list = list, .bins = out, .chunks = BINNING_CHUNKS};
+    /* Places for many chunks of few primitives would cost more than they save. */
+    if (list->count / BINNING_CHUNKS < pass->tile_count)
+        binning.chunks = 1;
+    out->first = memory_array(pass->tile_count + (size_t)1, sizeof *out->first);
+    binning.places = memory_array((size_t)binning.chunks * pass->tile_count, sizeof(size_t));
+    Result result = out->first && binning.places ? RESULT_OK : RESULT_NO_MEMORY;
+    if (result == RESULT_OK)
+        result = pool_run(pass->pool, binning.chunks, count_chunk, &binning);
+    if (result == RESULT_OK) {
+        count_to_place(&binning);
+        result = pass_reserve(pass, out->first[pass->tile_count] * sizeof *out->item);
     }
-    for (uint32_t t = 0; t < pass->tile_count; t++)
-        next[t + 1] += next[t];
-    Result result = pass_reserve(pass, next[pass->tile_count] * sizeof *out->item);
-    if (result != RESULT_OK)
-        return result;
-    out->item = memory_array(next[pass->tile_count], sizeof *out->item);
-    if (!out->item)
-        return RESULT_NO_MEMORY;
-    for (size_t i = 0; i < list->count; i++) {
-        TileRange r = tiles_of(pass, &list->items[i]);
-        for (uint32_t y = r.y0; y <= r.y1; y++)
-            for (uint32_t x = r.x0; x <= r.x1; x++)
-                out->item[next[y * pass->tile_columns + x]++] = (uint32_t)i;
+    if (result == RESULT_OK) {
+        out->item = memory_array(out->first[pass->tile_count], sizeof *out->item);
+        result = out->item ? pool_run(pass->pool, binning.chunks, put_chunk, &binning)
+                           : RESULT_NO_MEMORY;
     }
-    return RESULT_OK;
+    free(binning.places);
+    return result;
 }
 
 Result pass_reserve(Pass *pass, uint64_t bytes)
@@ -152,11 +204,4 @@ void pass_counts_report(const PassCounts *counts, Frame *frame)
         counts->fragments - (counts->peeled - counts->repeated) - counts->remaining;
     frame->residual_max = counts->residual_max;
     frame->residual_pixels = counts->residual_pixels;
-}
-
-float pass_background_weight(const Pass *pass, const float accum[4], float opaque_alpha)
-{
-    if (pass->desc->opaque_blend == OPAQUE_BLEND_SEED && opaque_alpha > SHADING_ALPHA_TEST)
-        return 0.0f;
-    return accum[3];
 }

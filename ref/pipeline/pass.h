@@ -4,6 +4,7 @@
 
 #include "base/pool.h"
 #include "frame/frame.h"
+#include "frame/shading.h"
 #include "frame/view.h"
 #include "ref/pipeline/buffers.h"
 #include "ref/pipeline/setup.h"
@@ -159,6 +160,11 @@ void pass_counts_add(PassCounts *sum, const PassCounts *tile);
 void pass_counts_report(const PassCounts *counts, Frame *frame);
 
 /* The transmittance towards the background (see frame/shading.h, resolve). */
-float pass_background_weight(const Pass *pass, const float accum[4], float opaque_alpha);
+static inline float pass_background_weight(const Pass *pass, float transmittance,
+                                           float opaque_alpha)
+{
+    bool seed = pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
+    return seed && opaque_alpha > SHADING_ALPHA_TEST ? 0.0f : transmittance;
+}
 
 #endif

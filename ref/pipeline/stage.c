@@ -147,7 +147,7 @@ static void resolve_pixel(Stage *stage, int x, int row)
     format_fetch(stage->accum.format, image_pixel(&stage->accum, x, row), accum);
     format_fetch(stage->opaque.diffuse.format, image_pixel(&stage->opaque.diffuse, x, row), opaque);
     float *final = image_pixel(&stage->frame->final, x, row);
-    shade_final(&pass->view, accum, pass_background_weight(pass, accum, opaque[3]), final);
+    shade_final(&pass->view, accum, pass_background_weight(pass, accum[3], opaque[3]), final);
     shade_display(pass->fused, final, image_pixel(&stage->frame->display, x, row));
 }
 

@@ -12,6 +12,7 @@
  * does not grow with the scene, the number of peels or of layers. */
 #include "base/memory.h"
 #include "ref/pipeline/pass.h"
+#include "ref/pipeline/resolve_body.h"
 #include "ref/pipeline/tile.h"
 #include "ref/pipeline/tile_light_body.h"
 #include "ref/pipeline/tile_raster_body.h"
@@ -472,24 +473,54 @@ static void clear_tile(const Tile *tile)
                         lanes_all(i == 3 ? 1.0f : 0.0f));
 }
 
+/* A block's accumulated channels, and its transmittances to the background. */
+static inline void fetch_block(const Tile *tile, int block, float accum[4][LANES],
+                               float weight[LANES])
+{
+    PixelFormat format = tile->pass->desc->accum;
+    if (format == FORMAT_RGBA32F) {
+        memcpy(accum, accum_of(tile->scratch->accum, block * LANES), sizeof(float[4][LANES]));
+    } else {
+        for (int lane = 0; lane < LANES; lane++) {
+            float value[4];
+            format_fetch(format, tile->scratch->accum + 16 * (size_t)(block * LANES + lane), value);
+            for (int i = 0; i < 4; i++)
+                accum[i][lane] = value[i];
+        }
+    }
+    for (int lane = 0; lane < LANES; lane++) {
+        bool opaque = tile->scratch->opaque_index[block * LANES + lane] >= 0;
+        weight[lane] = pass_background_weight(tile->pass, accum[3][lane], opaque ? 1.0f : 0.0f);
+    }
+}
+
+static inline void put_block(const Tile *tile, int block, const float final[4][LANES],
+                             const uint8_t display[LANES][4], Frame *frame)
+{
+    int x = grid_x(&tile->grid, block), y = grid_y(&tile->grid, block);
+    int right = tile->grid.rect.x1 + 1 - x, up = tile->grid.rect.y1 + 1 - y;
+    int columns = right < BLOCK_WIDTH ? right : BLOCK_WIDTH;
+    for (int row = 0; row < BLOCK_HEIGHT && row < up; row++) {
+        int image_y = tile->pass->view.height - 1 - (y + row);
+        float(*out)[4] = image_pixel(&frame->final, x, image_y);
+        for (int column = 0; column < columns; column++)
+            for (int i = 0; i < 4; i++)
+                out[column][i] = final[i][row * BLOCK_WIDTH + column];
+        memcpy(image_pixel(&frame->display, x, image_y), display[row * BLOCK_WIDTH],
+               (size_t)columns * 4);
+    }
+}
+
 static void resolve_tile(const TileJob *job, const Tile *tile)
 {
-    const Pass *pass = tile->pass;
-    for (int pixel = 0; pixel < tile->grid.size * tile->grid.size; pixel++) {
-        int x = grid_pixel_x(&tile->grid, pixel), y = grid_pixel_y(&tile->grid, pixel);
-        if (!grid_inside(&tile->grid, x, y))
+    for (int block = 0; block < grid_blocks(&tile->grid); block++) {
+        float accum[4][LANES], weight[LANES], final[4][LANES];
+        uint8_t display[LANES][4];
+        if (!grid_inside(&tile->grid, grid_x(&tile->grid, block), grid_y(&tile->grid, block)))
             continue;
-        int row = pass->view.height - 1 - y;
-        float accum[4];
-        if (pass->desc->accum == FORMAT_RGBA32F)
-            for (int i = 0; i < 4; i++)
-                accum[i] = accum_of(tile->scratch->accum, pixel)[i * LANES];
-        else
-            format_fetch(pass->desc->accum, tile->scratch->accum + 16 * (size_t)pixel, accum);
-        float opaque_alpha = tile->scratch->opaque_index[pixel] < 0 ? 0.0f : 1.0f;
-        float *final = image_pixel(&job->frame->final, x, row);
-        shade_final(&pass->view, accum, pass_background_weight(pass, accum, opaque_alpha), final);
-        shade_display(pass->fused, final, image_pixel(&job->frame->display, x, row));
+        fetch_block(tile, block, accum, weight);
+        resolve_batch(&tile->pass->view, tile->pass->fused, accum, weight, final, display);
+        put_block(tile, block, final, display, job->frame);
     }
 }
 

@@ -12,7 +12,6 @@
 #include "ref/pipeline/tile_raster_body.h"
 
 enum {
-    VARYINGS = 8, /* position, normal, uv: Vertex's, in its order */
     PLANES_CACHED = 1024
 };
 
@@ -66,14 +65,11 @@ static __attribute__((noinline)) void make_planes(const TileLight *light, int32_
     else
         pass_setup(light->pass, &light->list->items[item], &made);
     const Vertex *const *v = setup->corner;
-    float value[3][VARYINGS];
-    for (int k = 0; k < 3; k++) {
-        const float *from[] = {v[k]->position, v[k]->normal, v[k]->uv};
-        for (int i = 0; i < VARYINGS; i++)
-            value[k][i] = op_mul(from[i / 3][i % 3], v[k]->window[3]);
-    }
     for (int i = 0; i < VARYINGS; i++) {
-        Plane plane = setup_plane(setup, value[0][i], value[1][i], value[2][i]);
+        float value[3];
+        for (int k = 0; k < 3; k++)
+            value[k] = op_mul(v[k]->varying[i], v[k]->window[3]);
+        Plane plane = setup_plane(setup, value[0], value[1], value[2]);
         out->origin[i] = plane.origin;
         out->dx[i] = plane.dx;
         out->dy[i] = plane.dy;
