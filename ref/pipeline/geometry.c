@@ -20,8 +20,10 @@ typedef struct Chunk {
 typedef struct ChunkOutput {
     Vertex *cut; /* vertices that the clipper made */
     size_t cut_count, cut_capacity;
-    Primitive *primitives; /* vertex indices ≥ mesh_vertices mean cut[index − mesh_vertices] */
-    size_t primitive_count, primitive_capacity;
+    /* In Build.primitives, or in `grown` where clipping made more than there were triangles. Vertex
+     * indices ≥ mesh_vertices mean cut[index − mesh_vertices]. */
+    Primitive *primitives, *grown;
+    size_t primitive_count, primitive_capacity, grown_capacity;
     size_t first_cut, first_primitive; /* where they go, in Geometry.vertices and the list */
 } ChunkOutput;
 
@@ -31,9 +33,11 @@ typedef struct Build {
     Viewport viewport;
     Geometry *geometry;
     Chunk *vertex_chunks, *triangle_chunks;
-    ChunkOutput *outputs; /* one per chunk of triangles */
+    ChunkOutput *outputs;  /* one per chunk of triangles */
+    Primitive *primitives; /* room for one per triangle */
     size_t vertex_chunk_count, triangle_chunk_count;
-    size_t mesh_vertices; /* over all draws */
+    size_t mesh_vertices, triangles; /* over all draws */
+    size_t vertex_capacity; /* room for those that clipping makes in all but unusual frames */
 } Build;
 
 /* mat4·(v, 1): columns from first to last, the fourth term is the column itself. */
@@ -64,6 +68,20 @@ static __attribute__((noinline)) void transform_vertices(const Build *build, con
     }
 }
 
+static Result make_room(ChunkOutput *output)
+{
+    bool moves = output->grown == NULL;
+    Result result = memory_grow((void **)&output->grown, &output->grown_capacity,
+                                output->primitive_count + 1, sizeof *output->grown);
+    if (result != RESULT_OK)
+        return result;
+    if (moves && output->primitive_count > 0)
+        memcpy(output->grown, output->primitives, output->primitive_count * sizeof *output->grown);
+    output->primitives = output->grown;
+    output->primitive_capacity = output->grown_capacity;
+    return RESULT_OK;
+}
+
 static Result emit(const Build *build, ChunkOutput *output, const Vertex *const corners[3],
                    Primitive primitive)
 {
@@ -76,8 +94,7 @@ static Result emit(const Build *build, ChunkOutput *output, const Vertex *const 
     if (primitive.box.x0 > primitive.box.x1 || primitive.box.y0 > primitive.box.y1)
         return RESULT_OK;
     if (output->primitive_count == output->primitive_capacity) {
-        Result result = memory_grow((void **)&output->primitives, &output->primitive_capacity,
-                                    output->primitive_count + 1, sizeof primitive);
+        Result result = make_room(output);
         if (result != RESULT_OK)
             return result;
     }
@@ -122,10 +139,6 @@ static __attribute__((noinline)) Result assemble(const Build *build, const Chunk
 {
     const Draw *draw = &build->view->draws[chunk->draw];
     const Mesh *mesh = &build->scene->meshes[draw->mesh];
-    Result room = memory_grow((void **)&output->primitives, &output->primitive_capacity,
-                              chunk->count, sizeof *output->primitives);
-    if (room != RESULT_OK)
-        return room;
     for (uint32_t t = chunk->first; t < chunk->first + chunk->count; t++) {
         Primitive primitive = {.id = draw->first_primitive + t, .draw = chunk->draw};
         const Vertex *corners[3];
@@ -211,7 +224,7 @@ static Result place(Build *build)
     geometry->opaque.items = memory_array(geometry->opaque.count, sizeof(Primitive));
     geometry->transparent.items = memory_array(geometry->transparent.count, sizeof(Primitive));
     Vertex *vertices = geometry->vertices;
-    if (geometry->vertex_count > build->mesh_vertices)
+    if (geometry->vertex_count > build->vertex_capacity)
         vertices = realloc(vertices, geometry->vertex_count * sizeof *vertices);
     if (vertices)
         geometry->vertices = vertices;
@@ -236,10 +249,22 @@ static void add_chunks(uint32_t draw, uint32_t count, size_t first_vertex, Chunk
     }
 }
 
+/* A chunk's part of the room for primitives: as much as it has triangles. */
+static void share_room(Build *build)
+{
+    size_t first = 0;
+    for (size_t i = 0; i < build->triangle_chunk_count; i++) {
+        build->outputs[i].primitives = build->primitives + first;
+        build->outputs[i].primitive_capacity = build->triangle_chunks[i].count;
+        first += build->triangle_chunks[i].count;
+    }
+}
+
 static void cut_into_chunks(Build *build)
 {
     const View *view = build->view;
-    build->vertex_chunk_count = build->triangle_chunk_count = build->mesh_vertices = 0;
+    build->vertex_chunk_count = build->triangle_chunk_count = 0;
+    build->mesh_vertices = build->triangles = 0;
     for (size_t i = 0; i < view->draw_count; i++) {
         const Mesh *mesh = &build->scene->meshes[view->draws[i].mesh];
         add_chunks((uint32_t)i, mesh->vertex_count, build->mesh_vertices, build->vertex_chunks,
@@ -247,6 +272,7 @@ static void cut_into_chunks(Build *build)
         add_chunks((uint32_t)i, mesh->triangle_count, build->mesh_vertices, build->triangle_chunks,
                    &build->triangle_chunk_count);
         build->mesh_vertices += mesh->vertex_count;
+        build->triangles += mesh->triangle_count;
     }
 }
 
@@ -259,11 +285,14 @@ static Result allocate(Build *build)
     build->triangle_chunks =
         memory_array(build->triangle_chunk_count, sizeof *build->triangle_chunks);
     build->outputs = memory_array(build->triangle_chunk_count, sizeof *build->outputs);
-    build->geometry->vertices = memory_array(build->mesh_vertices, sizeof(Vertex));
-    if (!build->vertex_chunks || !build->triangle_chunks || !build->outputs ||
+    build->primitives = memory_array(build->triangles, sizeof *build->primitives);
+    build->vertex_capacity = build->mesh_vertices + build->mesh_vertices / 4 + CHUNK;
+    build->geometry->vertices = memory_array(build->vertex_capacity, sizeof(Vertex));
+    if (!build->vertex_chunks || !build->triangle_chunks || !build->outputs || !build->primitives ||
         !build->geometry->vertices)
         return RESULT_NO_MEMORY;
     cut_into_chunks(build);
+    share_room(build);
     return RESULT_OK;
 }
 
@@ -271,9 +300,10 @@ static void free_chunks(Build *build)
 {
     for (size_t i = 0; build->outputs && i < build->triangle_chunk_count; i++) {
         free(build->outputs[i].cut);
-        free(build->outputs[i].primitives);
+        free(build->outputs[i].grown);
     }
     free(build->outputs);
+    free(build->primitives);
     free(build->vertex_chunks);
     free(build->triangle_chunks);
 }
