@@ -85,6 +85,8 @@ START_TEST(test_kernels)
             ck_assert_float_eq_tol(kernels[i].fma(1000), 12.0f * (float)kernels[i].lanes, 1e-3f);
         kernels[i].write(from, 128);
         ck_assert_float_eq(kernels[i].read(from, 128), 192.0f);
+        for (int k = 0; k < 128; k++)
+            from[k] = (float)k;
         kernels[i].copy(to, from, 128);
         ck_assert_mem_eq(to, from, sizeof to);
     }
