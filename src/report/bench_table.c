@@ -28,12 +28,12 @@ void report_bench_print(const BenchReport *report, size_t first, FILE *out)
     fprintf(out, "\n%s, %dx%d, %d %s, %d %s\n", report->plan->scenes[head->scene].scene->name,
             head->width, head->height, head->lights, head->lights == 1 ? "light" : "lights",
             head->threads, head->threads == 1 ? "thread" : "threads");
-    fprintf(out, "%-16s %-14s %6s %-8s %9s %9s %7s %8s %8s %6s\n", "method", "formats", "passes",
+    fprintf(out, "%-16s %-14s %6s %-8s %8s %8s %7s %8s %8s %6s\n", "method", "formats", "passes",
             "renderer", "cpu ms", "wall ms", "spread", "max abs", "rmse", "MiB");
     for (size_t i = first; i < report->count; i++) {
         const BenchRow *row = &report->rows[i];
         char passes[REPORT_BENCH_PASSES];
-        fprintf(out, "%-16s %-14s %6s %-8s %9.1f %9.1f %6.0f%%", method_info(row->method)->name,
+        fprintf(out, "%-16s %-14s %6s %-8s %8.1f %8.1f %6.0f%%", method_info(row->method)->name,
                 report->plan->formats[row->format].name, report_bench_passes(row->passes, passes),
                 bench_renderer_name(row->renderer), row->cpu_ms, row->wall_ms, 100.0 * row->spread);
         print_error(row->max_abs, out);
