@@ -41,7 +41,7 @@ static inline void fragment_texture(const Pass *pass, const Setup *setup, const 
         for (int i = 0; i < 4; i++)
             base[i] = op_mul(base[i], sample[i]);
     }
-    if (material->metallic_roughness_texture) {
+    if (material->metallic_roughness_texture && needs_has(&pass->needs, NEED_MATERIAL_TEXTURE)) {
         texture_sample(&textures[material->metallic_roughness_texture - 1], uv, sample);
         surface[0] = op_mul(surface[0], sample[1]);
         surface[1] = op_mul(surface[1], sample[2]);
@@ -74,32 +74,50 @@ static inline bool fragment_masked(const Pass *pass, const Setup *setup, const P
     return base[3] < op_flush(material->alpha_cutoff);
 }
 
+/* Its position in view space; 0 where nothing needs it. */
+static inline void fragment_position(const Pass *pass, const Setup *setup, float inverse_w, int x,
+                                     int y, float position[4])
+{
+    const Vertex *const *v = setup->corner;
+    memset(position, 0, 4 * sizeof *position);
+    if (!needs_has(&pass->needs, NEED_POSITION))
+        return;
+    for (int i = 0; i < 3; i++)
+        position[i] = fragment_varying(
+            pass, setup, (float[3]){v[0]->position[i], v[1]->position[i], v[2]->position[i]},
+            inverse_w, x, y);
+    position[3] = 1.0f;
+}
+
+/* Its normal, turned to the viewer where the request says so; 0 where nothing needs it. */
+static inline void fragment_normal(const Pass *pass, const Setup *setup, float inverse_w, int x,
+                                   int y, float normal[4])
+{
+    const Vertex *const *v = setup->corner;
+    memset(normal, 0, 4 * sizeof *normal);
+    if (!needs_has(&pass->needs, NEED_NORMAL))
+        return;
+    for (int i = 0; i < 3; i++)
+        normal[i] = fragment_varying(pass, setup,
+                                     (float[3]){v[0]->normal[i], v[1]->normal[i], v[2]->normal[i]},
+                                     inverse_w, x, y);
+    float scale = op_inversesqrt(op_max(op_dot3(normal, normal), SHADING_TINY));
+    bool turn = pass->desc->normals == NORMALS_FACED && !setup->front;
+    for (int i = 0; i < 3; i++) {
+        float n = op_mul(normal[i], scale);
+        normal[i] = turn ? op_neg(n) : n;
+    }
+}
+
 /* The surface it shows, unquantised, its normal not encoded. Flushing mode. */
 static inline void fragment_surface(const Pass *pass, const Setup *setup,
                                     const Primitive *primitive, int x, int y, Texel *out)
 {
     const Draw *draw = &pass->view.draws[primitive->draw];
     const Material *material = &pass->scene->materials[draw->material];
-    const Vertex *const *v = setup->corner;
     float inverse_w = fragment_inverse_w(pass, setup, x, y);
-    float normal[3];
-    for (int i = 0; i < 3; i++) {
-        out->position[i] = fragment_varying(
-            pass, setup, (float[3]){v[0]->position[i], v[1]->position[i], v[2]->position[i]},
-            inverse_w, x, y);
-        normal[i] = fragment_varying(pass, setup,
-                                     (float[3]){v[0]->normal[i], v[1]->normal[i], v[2]->normal[i]},
-                                     inverse_w, x, y);
-    }
-    out->position[3] = 1.0f;
-
-    float scale = op_inversesqrt(op_max(op_dot3(normal, normal), SHADING_TINY));
-    bool turn = pass->desc->normals == NORMALS_FACED && !setup->front;
-    for (int i = 0; i < 3; i++) {
-        float n = op_mul(normal[i], scale);
-        out->normal[i] = turn ? op_neg(n) : n;
-    }
-    out->normal[3] = 0.0f;
+    fragment_position(pass, setup, inverse_w, x, y, out->position);
+    fragment_normal(pass, setup, inverse_w, x, y, out->normal);
     fragment_material(pass, setup, material, inverse_w, x, y, out->diffuse, out->material);
     if (!draw->transparent)
         out->diffuse[3] = 1.0f;
@@ -112,7 +130,7 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
                                   int x, int y, Texel *out)
 {
     fragment_surface(pass, setup, primitive, x, y, out);
-    if (pass->layout.normal == FORMAT_RG16)
+    if (pass->layout.normal == FORMAT_RG16 && needs_has(&pass->needs, NEED_NORMAL))
         encode_octahedral(out->normal, out->normal);
 }
 
@@ -120,9 +138,9 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
  * place. depth: the stored depth (depth_key). Flushing mode. */
 static inline void fragment_decode(const Pass *pass, uint32_t depth, int x, int y, Texel *texel)
 {
-    if (pass->layout.normal == FORMAT_RG16)
+    if (pass->layout.normal == FORMAT_RG16 && needs_has(&pass->needs, NEED_NORMAL))
         decode_octahedral(texel->normal, texel->normal);
-    if (pass->layout.position == FORMAT_NONE)
+    if (pass->layout.position == FORMAT_NONE && needs_has(&pass->needs, NEED_POSITION))
         decode_position(&pass->view.unprojection, depth_fetch(pass->depth_format, depth), x, y,
                         texel->position);
 }

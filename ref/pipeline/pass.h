@@ -4,6 +4,7 @@
 
 #include "base/pool.h"
 #include "frame/frame.h"
+#include "frame/needs.h"
 #include "frame/view.h"
 #include "ref/pipeline/buffers.h"
 #include "ref/pipeline/setup.h"
@@ -32,10 +33,13 @@ typedef struct Pass {
     uint64_t bytes, limit; /* reserved so far; the caller's --max-memory */
     bool fused, reversed;
     PixelFormat depth_format;
-    GBufferLayout layout;
+    GBufferLayout layout; /* of what fragments are rounded to */
+    Needs needs;
+    GBufferLayout stored[2]; /* of the opaque and the transparent list's buffers: what is needed */
 } Pass;
 
-Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out);
+/* traced: see needs_derive. */
+Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass *out);
 void pass_free(Pass *pass);
 
 /* Accounts for bytes about to be allocated; NO_MEMORY and a message past the limit. */
@@ -119,7 +123,8 @@ static inline bool pass_may_leave(const Pass *pass, int peels, int limit)
     return peels > 0 && (peels == limit || pass->desc->peel_test == PEEL_TEST_RAW);
 }
 
-/* Of a method that draws the transparent list peel by peel, until one yields nothing or the limit. */
+/* Of a method that draws the transparent list peel by peel, until one yields nothing or the limit.
+ */
 static inline int pass_geometry_passes(const Pass *pass, int peels)
 {
     int limit = pass->desc->passes ? pass->desc->passes : PASSES_MAX;

@@ -124,6 +124,7 @@ RenderOptions options_default(void)
         .weight = -1,
         .post = -1,
         .simd = -1,
+        .model_all = -1,
     };
 }
 
@@ -187,6 +188,7 @@ static Result apply_names(RenderOptions *options)
     APPLY(weight, WeightEquation);
     APPLY(post, PostEffect);
     APPLY(simd, SimdChoice);
+    APPLY(model_all, bool);
     if (options->depth >= 0)
         desc->depth = depths[options->depth];
     if (options->accum >= 0)

@@ -31,7 +31,7 @@ typedef struct RenderOptions {
     /* −1: as the profile or the default has it; else the index of the name that was given, which
      * is the value in RenderDesc but for the formats. */
     int profile, cull, normals, shading, ggx, back_light, depth_func, depth_range, peel_test,
-        gbuffer, position, depth, accum, sort, weight, post, simd;
+        gbuffer, position, depth, accum, sort, weight, post, simd, model_all;
 } RenderOptions;
 
 /* A child parser; its input is a RenderOptions. Takes SCENE as the first argument. */

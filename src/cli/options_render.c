@@ -100,6 +100,7 @@ enum {
     KEY_FMA,
     KEY_GL,
     KEY_SIMD,
+    KEY_MODEL,
     KEY_THREADS,
     KEY_MEMORY,
 };
@@ -173,6 +174,9 @@ static const struct argp_option render_options[] = {
     {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 1},
     {"simd", KEY_SIMD, "NAME", 0,
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
+    {"model", KEY_MODEL, "WHAT", 0,
+     "needed (default): leave out what this scene does not need, see peel plan; or all; same bits",
+     1},
     {"threads", KEY_THREADS, "N", 0, "Worker threads (default one per processor)", 1},
     {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
     {0},
@@ -288,6 +292,7 @@ static const NamedOption named_options[] = {
     NAMED(KEY_WEIGHT, "--weight", weight, "9", "7", "8", "10"),
     NAMED(KEY_POST, "--post", post, "none", "edges"),
     NAMED(KEY_SIMD, "--simd", simd, "auto", "scalar", "sse2", "avx2", "avx512"),
+    NAMED(KEY_MODEL, "--model", model_all, "needed", "all"),
 };
 
 static error_t parse_named(int key, const char *argument, RenderOptions *options)

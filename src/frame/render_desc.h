@@ -157,6 +157,7 @@ typedef struct RenderDesc {
     int nodes_per_pixel;   /* of METHOD_LINKED_LIST: room on average; 0: as many as are needed */
     PostEffect post;       /* of METHOD_LINKED_LIST */
     bool unfused;          /* model a driver without fused multiply-add */
+    bool model_all;        /* leave nothing out that changes no bit (frame/needs.h) */
     RefPath ref_path;
     SimdChoice simd;
     bool bound;        /* truth: fill Frame.bound */

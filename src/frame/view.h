@@ -40,8 +40,9 @@ typedef struct View {
     float projection[16];
     Unprojection unprojection;
     size_t draw_count;
-    Draw *draws; /* invisible instances (masked away, alpha < 1e-4) left out */
-    size_t light_count;
+    Draw *draws;             /* invisible instances (masked away, alpha < 1e-4) left out */
+    size_t light_count;      /* those that can light anything, or with desc->model_all all */
+    size_t dark_light_count; /* left out: black, or unused by Phong */
     ViewLight *lights;
     float ambient[3], background[3];
 } View;

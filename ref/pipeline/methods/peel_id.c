@@ -186,7 +186,7 @@ static Result peels(Stage *stage)
 static Result make(const Pass *pass, PeelId *out)
 {
     int width = pass->view.width, height = pass->view.height;
-    Result result = gbuffer_create(pass->desc, &out->layer);
+    Result result = gbuffer_create(pass->desc, &pass->stored[1], &out->layer);
     if (result == RESULT_OK)
         result = image_create(width, height, pass->depth_format, &out->previous_depth);
     if (result == RESULT_OK)
@@ -202,7 +202,7 @@ Result peel_id_render(Pass *pass, TraceSink *trace, Frame *frame)
         (uint64_t)pass->view.width * (uint64_t)pass->view.height *
         (format_pixel_bytes(pass->depth_format) + format_pixel_bytes(FORMAT_R32UI));
     Result result = stage_create(pass, trace, frame, &state,
-                                 stage_gbuffer_bytes(pass) + previous_bytes, &stage);
+                                 stage_gbuffer_bytes(pass, true) + previous_bytes, &stage);
     if (result != RESULT_OK)
         return result;
     result = make(pass, &state);
