@@ -67,7 +67,8 @@ static __attribute__((noinline)) Result render_in(Context *context, const Scene 
     result = passes_create(context, scene, desc, view, trace, &passes);
     if (result != RESULT_OK)
         return result;
-    result = methods[desc->method](&passes, out);
+    result = needs_has(&passes.needs, NEED_TRANSPARENT) ? methods[desc->method](&passes, out)
+                                                        : passes_opaque_only(&passes, out);
     if (result == RESULT_OK) {
         passes_resolve(&passes);
         result = read_result(&passes, out);

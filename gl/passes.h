@@ -6,6 +6,7 @@
 #define PEEL_GL_PASSES_H
 
 #include "frame/frame.h"
+#include "frame/needs.h"
 #include "targets.h"
 #include "upload.h"
 
@@ -14,6 +15,7 @@ typedef struct Passes {
     const Scene *scene; /* borrowed */
     const RenderDesc *desc;
     const View *view;
+    Needs needs;
     TraceSink *trace; /* may be NULL */
     void *pixels;     /* scratch for read-back, 16 bytes a pixel; NULL without a trace */
     Targets targets;
@@ -89,6 +91,8 @@ void passes_light_layer(const Passes *passes, const Layer *layer);
 Result passes_finish(Passes *passes, int peels);
 /* The second half of it, where the opaque colour is blended already. */
 Result passes_trace_accum(Passes *passes, int step);
+/* A whole frame, but for passes_resolve, of a scene without transparent surfaces. */
+Result passes_opaque_only(Passes *passes, Frame *out);
 /* Accumulation and background to the final image, and its display form. */
 void passes_resolve(Passes *passes);
 /* Blending as the source's under-blend. */

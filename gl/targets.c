@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void choose_formats(const RenderDesc *desc, Targets *out)
+static void choose_formats(const RenderDesc *desc, const Needs *needs, Targets *out)
 {
-    GBufferLayout layout = render_desc_layout(desc);
+    GBufferLayout layout = needs_layout(needs, desc, needs_has(needs, NEED_TRANSPARENT));
     out->depth_format = render_desc_depth(desc);
     out->accum_format = desc->accum;
     out->lit = desc->method == METHOD_FORWARD;
@@ -142,9 +142,19 @@ void targets_destroy_layer(Layer *layer, bool shares_color)
     *layer = (Layer){0};
 }
 
-static Result make(const RenderDesc *desc, Targets *out)
+static Result make_opaque(const Needs *needs, Targets *out)
 {
-    Result result = targets_layer(out, NULL, &out->opaque);
+    if (needs_has(needs, NEED_OPAQUE))
+        return targets_layer(out, NULL, &out->opaque);
+    Result result = targets_texture(out, out->depth_format, &out->opaque.depth);
+    return result == RESULT_OK
+               ? targets_framebuffer(0, NULL, out->opaque.depth, &out->opaque.buffer)
+               : result;
+}
+
+static Result make(const RenderDesc *desc, const Needs *needs, Targets *out)
+{
+    Result result = make_opaque(needs, out);
     if (result == RESULT_OK && targets_needs_code(desc))
         result = targets_texture(out, FORMAT_R32UI, &out->opaque_code);
     if (result == RESULT_OK)
@@ -161,15 +171,15 @@ static Result make(const RenderDesc *desc, Targets *out)
     return result;
 }
 
-Result targets_create(Context *context, const RenderDesc *desc, Targets *out)
+Result targets_create(Context *context, const RenderDesc *desc, const Needs *needs, Targets *out)
 {
     *out = (Targets){.width = desc->width,
                      .height = desc->height,
                      .limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT};
-    choose_formats(desc, out);
+    choose_formats(desc, needs, out);
     Result result = check_limits(context, desc);
     if (result == RESULT_OK)
-        result = make(desc, out);
+        result = make(desc, needs, out);
     if (result == RESULT_OK)
         result = context_check(context, "framebuffers");
     if (result != RESULT_OK)

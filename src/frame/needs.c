@@ -183,8 +183,22 @@ void needs_derive(const Scene *scene, const View *view, const RenderDesc *desc, 
     derive_normal_and_position(desc, draws.back_faces, items);
     derive_material(&draws, desc, items);
     derive_constants(&draws, out->material);
-    if (traced || desc->model_all || desc->method == METHOD_LINKED_LIST)
+    out->all = traced || desc->model_all || desc->method == METHOD_LINKED_LIST;
+    if (out->all)
         need_all(scene, desc, traced, items);
+}
+
+void needs_textures(const Needs *needs, const Scene *scene, const View *view, bool *wanted)
+{
+    for (size_t i = 0; i < scene->texture_count; i++)
+        wanted[i] = needs->all;
+    for (size_t i = 0; i < view->draw_count; i++) {
+        const Material *material = &scene->materials[view->draws[i].material];
+        if (material->base_color_texture && needs_has(needs, NEED_BASE_COLOR_TEXTURE))
+            wanted[material->base_color_texture - 1] = true;
+        if (material->metallic_roughness_texture && needs_has(needs, NEED_MATERIAL_TEXTURE))
+            wanted[material->metallic_roughness_texture - 1] = true;
+    }
 }
 
 /* ---- formats ---- */

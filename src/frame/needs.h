@@ -37,6 +37,7 @@ typedef struct Need {
 
 typedef struct Needs {
     Need items[NEED_COUNT];
+    bool all;                   /* nothing is left out but dark lights */
     size_t lights, dark_lights; /* that the frame draws; asked for, but they light nothing */
     /* Where NEED_MATERIAL is not needed: what all fragments of the opaque and of the transparent
      * list have that lighting looks at (roughness, metallic, occlusion, 1), unquantised; 0 in an
@@ -54,6 +55,10 @@ static inline bool needs_has(const Needs *needs, NeedId id)
 {
     return needs->items[id].needed;
 }
+
+/* wanted[i] (room for scene->texture_count) becomes whether a drawn material's texture i is
+ * fetched. */
+void needs_textures(const Needs *needs, const Scene *scene, const View *view, bool *wanted);
 
 /* Formats of a list's G-buffer as it is stored, FORMAT_NONE for what is left out: everything of an
  * empty list. (In render_desc_layout a position with FORMAT_NONE is one that is reconstructed.) */
