@@ -130,8 +130,9 @@ static void derive_material(const DrawNeeds *draws, const RenderDesc *desc, Need
     bool textured = draws->list[0].textured || draws->list[1].textured;
     bool surface = draws->list[0].surface_varies || draws->list[1].surface_varies || textured;
     bool occlusion = draws->list[0].occlusion_varies || draws->list[1].occlusion_varies;
-    bool varies = !phong && ((lit && surface) || occlusion);
-    bool marks = desc->method == METHOD_PEEL && desc->peel_test == PEEL_TEST_RAW;
+    bool forward = desc->method == METHOD_FORWARD;
+    bool varies = !phong && !forward && ((lit && surface) || occlusion);
+    bool marks = (desc->method == METHOD_PEEL || forward) && desc->peel_test == PEEL_TEST_RAW;
     items[NEED_MATERIAL_TEXTURE] =
         choose(textured && lit, "some materials have one",
                textured ? "no light needs roughness or metallic" : "no material has one");
@@ -139,7 +140,9 @@ static void derive_material(const DrawNeeds *draws, const RenderDesc *desc, Need
         choose(varies || marks,
                varies ? "it differs between fragments"
                       : "it marks the pixels that a peel drew, for the raw peel test",
-               phong ? "Phong does not use it" : "what lighting uses of it is the same everywhere");
+               forward ? "the geometry pass shades"
+               : phong ? "Phong does not use it"
+                       : "what lighting uses of it is the same everywhere");
 }
 
 static void derive_constants(const DrawNeeds *draws, float material[2][4])
