@@ -36,7 +36,7 @@ static Result make_programs(Sums *sums)
 static Result make(Sums *sums)
 {
     Targets *targets = &sums->passes->targets;
-    sums->format[0] = targets->accum_format == FORMAT_RGBA32F ? FORMAT_RGBA32F : FORMAT_RGBA16F;
+    sums->format[0] = render_desc_sum_format(sums->passes->desc);
     sums->format[1] = FORMAT_R32F;
     sums->count = *sums->method->second ? 2 : 1;
     sums->pixels = memory_array((size_t)targets->width * (size_t)targets->height,

@@ -21,17 +21,6 @@ static void choose_formats(const RenderDesc *desc, const Needs *needs, Targets *
         out->attachment[i] = out->color_format[i] == FORMAT_NONE ? -1 : out->color_count++;
 }
 
-bool targets_needs_code(const RenderDesc *desc)
-{
-    return render_desc_depth(desc) == FORMAT_D24 && desc->peel_test == PEEL_TEST_STORED;
-}
-
-bool targets_needs_previous_code(const RenderDesc *desc)
-{
-    return targets_needs_code(desc) && desc->depth_range == DEPTH_RANGE_REVERSED &&
-           !(desc->bias > 0.0f);
-}
-
 static Result check_limits(const Context *context, const RenderDesc *desc)
 {
     const ContextLimits *limits = context_limits(context);
@@ -155,7 +144,7 @@ static Result make_opaque(const Needs *needs, Targets *out)
 static Result make(const RenderDesc *desc, const Needs *needs, Targets *out)
 {
     Result result = make_opaque(needs, out);
-    if (result == RESULT_OK && targets_needs_code(desc))
+    if (result == RESULT_OK && render_desc_needs_code(desc))
         result = targets_texture(out, FORMAT_R32UI, &out->opaque_code);
     if (result == RESULT_OK)
         result = targets_texture(out, out->accum_format, &out->accum);

@@ -29,7 +29,7 @@ typedef struct Targets {
     int color_count;                 /* of those stored */
     bool lit;                        /* diffuse holds lit colours (METHOD_FORWARD) */
     Layer opaque;                    /* of an empty list: its depth alone */
-    GLuint opaque_code;              /* see targets_needs_code; 0 where it is not needed */
+    GLuint opaque_code;              /* see render_desc_needs_code; 0 where it is not needed */
     GLuint accum, final, display;
     GLuint plain_buffer, resolve_buffer; /* framebuffers of accum; of final and display */
     size_t bytes, limit;                 /* of the textures; the caller's --max-memory */
@@ -61,11 +61,6 @@ Result targets_framebuffer(int count, const GLuint *color, GLuint depth, GLuint 
 Result targets_layer(Targets *targets, const Layer *shared, Layer *out);
 void targets_destroy_layer(Layer *layer, bool shares_color); /* leaves an empty one */
 
-/* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float: the two
- * greatest are both 1. The opaque depth can be either of them, a previous peel's only where the
- * near plane is at 1. Then a R32UI copy of the integers is needed. A bias is added to floats. */
-bool targets_needs_code(const RenderDesc *desc);
-bool targets_needs_previous_code(const RenderDesc *desc);
 /* Copies the depth integers of framebuffer to a code texture; nothing where it is 0. */
 Result targets_copy_code(const Targets *targets, GLuint framebuffer, GLuint code);
 

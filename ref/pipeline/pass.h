@@ -93,6 +93,20 @@ static inline bool pass_peeled(const Pass *pass, FragmentDepth depth, uint32_t p
     return pass->reversed ? depth.key >= previous : depth.key <= previous;
 }
 
+/* Whether a stored depth is behind that of the previous layer, by more than the bias: what peeling
+ * by depth and primitive asks. */
+static inline bool pass_behind(const Pass *pass, uint32_t key, uint32_t previous)
+{
+    if (pass->reversed ? key >= previous : key <= previous)
+        return false;
+    float bias = pass->desc->bias;
+    if (!(bias > 0.0f))
+        return true;
+    float z = depth_fetch(pass->depth_format, key);
+    float fetched = depth_fetch(pass->depth_format, previous);
+    return pass->reversed ? z < op_sub(fetched, bias) : z > op_add(fetched, bias);
+}
+
 /* Whether further peels would have come to it: behind the previous layer, and not discarded with
  * it by the raw test, which cannot tell two 24-bit depths apart where a fetch rounds up. */
 static inline bool pass_remains(const Pass *pass, FragmentDepth depth, uint32_t previous)

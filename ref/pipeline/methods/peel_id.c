@@ -42,14 +42,7 @@ static inline bool comes_after(const Pass *pass, uint32_t key, uint32_t id, uint
         return false; /* it was empty */
     if (key == previous)
         return id_before(pass, previous_id, id);
-    if (pass->reversed ? key > previous : key < previous)
-        return false;
-    float bias = pass->desc->bias;
-    if (!(bias > 0.0f))
-        return true;
-    float z = depth_fetch(pass->depth_format, key);
-    float fetched = depth_fetch(pass->depth_format, previous);
-    return pass->reversed ? z < op_sub(fetched, bias) : z > op_add(fetched, bias);
+    return pass_behind(pass, key, previous);
 }
 
 static inline uint32_t previous_id(const PeelId *state, size_t pixel)
