@@ -9,7 +9,6 @@
 #include "report/html.h"
 #include "report/table.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,32 +100,6 @@ static const struct argp command_argp = {
     children,
     NULL,
     NULL};
-
-/* The command as a shell would take it again. */
-static char *command_line(int argc, char **argv)
-{
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        return NULL;
-    fprintf(out, "build/%s", argv[0]);
-    for (int i = 1; i < argc; i++) {
-        bool plain = argv[i][0] != '\0';
-        for (const char *c = argv[i]; *c; c++)
-            plain &= isalnum((unsigned char)*c) || strchr("_-./=,:+%@", *c) != NULL;
-        if (plain) {
-            fprintf(out, " %s", argv[i]);
-            continue;
-        }
-        fputs(" '", out);
-        for (const char *c = argv[i]; *c; c++)
-            *c == '\'' ? (void)fputs("'\\''", out) : (void)fputc(*c, out);
-        fputc('\'', out);
-    }
-    fclose(out);
-    return text;
-}
 
 /* Made, and found writable, before minutes of work and not after. */
 static Result open_directory(const char *path)
@@ -259,7 +232,7 @@ static Result compare(const CompareCommand *command, const Scene *scene, Threewa
 int cmd_compare(int argc, char **argv)
 {
     CompareCommand command = {.render = options_default(), .tolerance = -1.0};
-    command.line = command_line(argc, argv);
+    command.line = options_command_line(argc, argv);
     int code = options_parse(&command_argp, argc, argv, &command);
     if (code) {
         free(command.line);

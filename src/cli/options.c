@@ -4,6 +4,7 @@
 #include "scene/generate.h"
 #include "scene/gltf.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <libgen.h>
 #include <stdarg.h>
@@ -101,6 +102,31 @@ bool options_has_extension(const char *path, const char *extension)
 {
     size_t length = strlen(path), wanted = strlen(extension);
     return length > wanted && strcmp(path + length - wanted, extension) == 0;
+}
+
+char *options_command_line(int argc, char **argv)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fprintf(out, "%s%s", *argv[0] ? "build/" : "", argv[0]);
+    for (int i = 1; i < argc; i++) {
+        bool plain = argv[i][0] != '\0';
+        for (const char *c = argv[i]; *c; c++)
+            plain &= isalnum((unsigned char)*c) || strchr("_-./=,:+%@", *c) != NULL;
+        if (plain) {
+            fprintf(out, " %s", argv[i]);
+            continue;
+        }
+        fputs(" '", out);
+        for (const char *c = argv[i]; *c; c++)
+            *c == '\'' ? (void)fputs("'\\''", out) : (void)fputc(*c, out);
+        fputc('\'', out);
+    }
+    fclose(out);
+    return text;
 }
 
 RenderOptions options_default(void)

@@ -25,7 +25,8 @@ typedef struct RenderOptions {
     RenderDesc desc;
     const char *camera; /* name or index; NULL: the first */
     bool has_opacity, has_background;
-    bool all_methods; /* --method all, of commands that take it */
+    bool all_methods;            /* --method all, of commands that take it */
+    bool has_method, has_passes; /* one was given */
     double opacity, background[3];
     FmaChoice fma;
     /* −1: as the profile or the default has it; else the index of the name that was given, which
@@ -77,6 +78,10 @@ Result options_check_fma(const RenderOptions *options);
 
 /* Whether a file can be made or replaced at path (NULL is fine): found out before the work. */
 Result options_check_output(const char *path);
+
+/* The command as a shell would take it again: argv[0] is "peel <command>", or empty to have the
+ * arguments alone, each behind a space. The caller frees it; NULL without memory. */
+char *options_command_line(int argc, char **argv);
 
 /* Prints "peel: <message>" and returns EXIT_BAD_INPUT. */
 int options_fail(Result result);

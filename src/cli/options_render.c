@@ -240,6 +240,7 @@ static error_t parse_method(const char *text, RenderOptions *options)
 {
     const MethodInfo *method = method_find(text);
     options->all_methods = strcmp(text, "all") == 0;
+    options->has_method = method != NULL;
     if (method)
         options->desc.method = method->id;
     if (method || options->all_methods)
@@ -356,6 +357,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
     case KEY_METHOD:
         return parse_method(argument, options);
     case KEY_PASSES:
+        options->has_passes = true;
         return parse_passes(argument, desc);
     case KEY_BIAS:
         return parse_bias(argument, desc);

@@ -2,6 +2,10 @@
 
 #include "base/file.h"
 
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
 void document_put(Document *json, json_t *object, const char *key, json_t *value)
 {
     if (json_object_set_new(object, key, value))
@@ -12,6 +16,30 @@ void document_append(Document *json, json_t *array, json_t *value)
 {
     if (json_array_append_new(array, value))
         json->failed = true;
+}
+
+json_t *document_real(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *document_count(uint64_t value)
+{
+    return json_integer((json_int_t)value);
+}
+
+json_t *document_string(const char *text)
+{
+    json_t *value = json_string(text);
+    if (value)
+        return value;
+    char *ascii = strdup(text);
+    for (char *c = ascii; c && *c; c++)
+        if ((unsigned char)*c > 126)
+            *c = '?';
+    value = ascii ? json_string(ascii) : NULL;
+    free(ascii);
+    return value;
 }
 
 static int write_text(const char *text, size_t size, void *writer)

@@ -4,18 +4,6 @@
 #include "report/document.h"
 #include "report/hard.h"
 
-#include <math.h>
-
-static json_t *real(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *count(uint64_t value)
-{
-    return json_integer((json_int_t)value);
-}
-
 /* What a method does not trace is null. */
 static void put_layers(Document *json, json_t *object, const HardRow *row)
 {
@@ -33,7 +21,7 @@ static void put_layers(Document *json, json_t *object, const HardRow *row)
                   {"opaque_flips", row->flips}};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
         document_put(json, object, counts[i].key,
-                     row->structure ? count(counts[i].value) : json_null());
+                     row->structure ? document_count(counts[i].value) : json_null());
 }
 
 static json_t *configuration(Document *json, const HardRow *row)
@@ -45,14 +33,14 @@ static json_t *configuration(Document *json, const HardRow *row)
     document_put(json, object, "depth", json_string(format_info(render_desc_depth(desc))->name));
     document_put(json, object, "accum", json_string(format_info(desc->accum)->name));
     put_layers(json, object, row);
-    document_put(json, object, "ref_gl_differing", count(row->ref_gl));
-    document_put(json, object, "ref_gl_max_ulp", count(row->max_ulp_gl));
-    document_put(json, object, "max_abs", real(row->max_abs));
-    document_put(json, object, "rmse", real(row->rmse));
-    document_put(json, object, "max_ulp", count(row->max_ulp_truth));
-    document_put(json, object, "error", real(row->error));
-    document_put(json, object, "bound", real(row->bound));
-    document_put(json, object, "nonfinite", count(row->nonfinite));
+    document_put(json, object, "ref_gl_differing", document_count(row->ref_gl));
+    document_put(json, object, "ref_gl_max_ulp", document_count(row->max_ulp_gl));
+    document_put(json, object, "max_abs", document_real(row->max_abs));
+    document_put(json, object, "rmse", document_real(row->rmse));
+    document_put(json, object, "max_ulp", document_count(row->max_ulp_truth));
+    document_put(json, object, "error", document_real(row->error));
+    document_put(json, object, "bound", document_real(row->bound));
+    document_put(json, object, "nonfinite", document_count(row->nonfinite));
     document_put(json, object, "note",
                  row->config.note ? json_string(row->config.note) : json_null());
     document_put(json, object, "pass", json_boolean(row->pass));
@@ -70,7 +58,7 @@ static json_t *hard_case(Document *json, const HardReport *report)
     document_put(json, object, "source", json_string(report->scene->source));
     document_put(json, object, "expected", json_string(report->hard->ought));
     document_put(json, object, "size", json_integer(report->hard->size));
-    document_put(json, object, "failed", count(report->failed));
+    document_put(json, object, "failed", document_count(report->failed));
     document_put(json, object, "configurations", rows);
     return object;
 }
@@ -85,9 +73,9 @@ Result report_hard_json(const HardReport *reports, size_t case_count, const char
         report_hard_add(&reports[i], &totals);
     }
     document_put(&json, root, "cases", cases);
-    document_put(&json, root, "configurations", count(totals.rows));
-    document_put(&json, root, "failed", count(totals.failed));
-    document_put(&json, root, "nonfinite", count(totals.nonfinite_rows));
-    document_put(&json, root, "ref_gl_differing", count(totals.differing_rows));
+    document_put(&json, root, "configurations", document_count(totals.rows));
+    document_put(&json, root, "failed", document_count(totals.failed));
+    document_put(&json, root, "nonfinite", document_count(totals.nonfinite_rows));
+    document_put(&json, root, "ref_gl_differing", document_count(totals.differing_rows));
     return document_write(&json, root, path);
 }

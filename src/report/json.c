@@ -5,54 +5,25 @@
 #include "report/summary.h"
 #include "report/table.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-static json_t *real(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *count(uint64_t value)
-{
-    return json_integer((json_int_t)value);
-}
-
-/* JSON is UTF-8; a path need not be. Where it is not, its bytes beyond ASCII become '?'. */
-static json_t *string(const char *text)
-{
-    json_t *value = json_string(text);
-    if (value)
-        return value;
-    char *ascii = strdup(text);
-    for (char *c = ascii; c && *c; c++)
-        if ((unsigned char)*c > 126)
-            *c = '?';
-    value = ascii ? json_string(ascii) : NULL;
-    free(ascii);
-    return value;
-}
-
 static json_t *renderers(Document *json, const Threeway *report)
 {
     json_t *object = json_object();
     for (int i = 0; i < RENDERER_COUNT; i++) {
         const Frame *frame = &report->frames[i];
         json_t *one = json_object();
-        document_put(json, one, "time_ms", real(frame->time_ms));
-        document_put(json, one, "cpu_ms", real(frame->cpu_ms));
+        document_put(json, one, "time_ms", document_real(frame->time_ms));
+        document_put(json, one, "cpu_ms", document_real(frame->cpu_ms));
         document_put(json, one, "threads", json_integer(frame->threads));
         document_put(json, one, "peels", json_integer(frame->peels));
         document_put(json, one, "geometry_passes", json_integer(frame->geometry_passes));
-        document_put(json, one, "fragments_shaded", count(frame->fragments_shaded));
-        document_put(json, one, "buffer_bytes", count(frame->buffer_bytes));
+        document_put(json, one, "fragments_shaded", document_count(frame->fragments_shaded));
+        document_put(json, one, "buffer_bytes", document_count(frame->buffer_bytes));
         if (frame->node_bytes) {
-            document_put(json, one, "nodes", count(frame->nodes));
-            document_put(json, one, "node_bytes", count(frame->node_bytes));
+            document_put(json, one, "nodes", document_count(frame->nodes));
+            document_put(json, one, "node_bytes", document_count(frame->node_bytes));
         }
-        document_put(json, one, "version", string(frame->version));
-        document_put(json, one, "renderer", string(frame->renderer));
+        document_put(json, one, "version", document_string(frame->version));
+        document_put(json, one, "renderer", document_string(frame->renderer));
         document_put(json, object, threeway_renderer_name(i), one);
     }
     return object;
@@ -64,11 +35,11 @@ static json_t *buffers(Document *json, const PairReport *pair)
     for (size_t i = 0; i < pair->buffer_count; i++) {
         const BufferMetrics *buffer = &pair->buffers[i];
         json_t *one = json_object();
-        document_put(json, one, "name", string(buffer->name));
-        document_put(json, one, "values", count(buffer->values));
-        document_put(json, one, "differing", count(buffer->differing));
+        document_put(json, one, "name", document_string(buffer->name));
+        document_put(json, one, "values", document_count(buffer->values));
+        document_put(json, one, "differing", document_count(buffer->differing));
         document_put(json, one, "max_ulp", json_integer(buffer->max_ulp));
-        document_put(json, one, "max_abs", real(buffer->max_abs));
+        document_put(json, one, "max_abs", document_real(buffer->max_abs));
         document_put(json, one, "first",
                      buffer->has_first
                          ? json_pack("[iii]", buffer->first[0], buffer->first[1], buffer->first[2])
@@ -81,14 +52,14 @@ static json_t *buffers(Document *json, const PairReport *pair)
 static json_t *final_image(Document *json, const FinalMetrics *final)
 {
     json_t *object = json_object();
-    document_put(json, object, "pixels", count(final->pixels));
-    document_put(json, object, "differing", count(final->differing));
-    document_put(json, object, "max_abs", real(final->max_abs));
-    document_put(json, object, "mean_abs", real(final->mean_abs));
-    document_put(json, object, "rmse", real(final->rmse));
-    document_put(json, object, "psnr", real(final->psnr));
+    document_put(json, object, "pixels", document_count(final->pixels));
+    document_put(json, object, "differing", document_count(final->differing));
+    document_put(json, object, "max_abs", document_real(final->max_abs));
+    document_put(json, object, "mean_abs", document_real(final->mean_abs));
+    document_put(json, object, "rmse", document_real(final->rmse));
+    document_put(json, object, "psnr", document_real(final->psnr));
     document_put(json, object, "max_ulp", json_integer(final->max_ulp));
-    document_put(json, object, "nonfinite", count(final->nonfinite));
+    document_put(json, object, "nonfinite", document_count(final->nonfinite));
     return object;
 }
 
@@ -105,26 +76,27 @@ static json_t *pairs(Document *json, const Threeway *report)
         document_put(json, one, "final", final_image(json, &pair->final));
         if (pair->has_unaffected) {
             json_t *unaffected = json_object();
-            document_put(json, unaffected, "pixels", count(pair->unaffected.pixels));
-            document_put(json, unaffected, "occupied", count(pair->unaffected.occupied));
-            document_put(json, unaffected, "max_abs", real(pair->unaffected.max_abs));
-            document_put(json, unaffected, "max_rel", real(pair->unaffected.max_rel));
-            document_put(json, unaffected, "p99_rel", real(pair->unaffected.p99_rel));
-            document_put(json, unaffected, "p999_rel", real(pair->unaffected.p999_rel));
+            document_put(json, unaffected, "pixels", document_count(pair->unaffected.pixels));
+            document_put(json, unaffected, "occupied", document_count(pair->unaffected.occupied));
+            document_put(json, unaffected, "max_abs", document_real(pair->unaffected.max_abs));
+            document_put(json, unaffected, "max_rel", document_real(pair->unaffected.max_rel));
+            document_put(json, unaffected, "p99_rel", document_real(pair->unaffected.p99_rel));
+            document_put(json, unaffected, "p999_rel", document_real(pair->unaffected.p999_rel));
             document_put(json, one, "unaffected", unaffected);
         }
         if (pair->has_bound) {
             json_t *bound = json_object();
-            document_put(json, bound, "pixels", count(pair->bound.pixels));
-            document_put(json, bound, "exceeded", count(pair->bound.exceeded));
-            document_put(json, bound, "unbounded", count(pair->bound.unbounded));
-            document_put(json, bound, "max_ratio", real(pair->bound.max_ratio));
-            document_put(json, bound, "median_ratio", real(pair->bound.median_ratio));
-            document_put(json, bound, "p99_ratio", real(pair->bound.p99_ratio));
-            document_put(json, bound, "median", real(pair->bound.median));
-            document_put(json, bound, "p99", real(pair->bound.p99));
-            document_put(json, bound, "rounding_median", real(pair->bound.rounding_median));
-            document_put(json, bound, "rounding_p99", real(pair->bound.rounding_p99));
+            document_put(json, bound, "pixels", document_count(pair->bound.pixels));
+            document_put(json, bound, "exceeded", document_count(pair->bound.exceeded));
+            document_put(json, bound, "unbounded", document_count(pair->bound.unbounded));
+            document_put(json, bound, "max_ratio", document_real(pair->bound.max_ratio));
+            document_put(json, bound, "median_ratio", document_real(pair->bound.median_ratio));
+            document_put(json, bound, "p99_ratio", document_real(pair->bound.p99_ratio));
+            document_put(json, bound, "median", document_real(pair->bound.median));
+            document_put(json, bound, "p99", document_real(pair->bound.p99));
+            document_put(json, bound, "rounding_median",
+                         document_real(pair->bound.rounding_median));
+            document_put(json, bound, "rounding_p99", document_real(pair->bound.rounding_p99));
             document_put(json, one, "bound", bound);
         }
         document_append(json, array, one);
@@ -138,16 +110,16 @@ static json_t *layers(Document *json, const Threeway *report)
     json_t *object = json_object();
     summary_layers(report, rows);
     for (int i = 0; i < SUMMARY_LAYERS; i++)
-        document_put(json, object, rows[i].key, count(rows[i].value));
+        document_put(json, object, rows[i].key, document_count(rows[i].value));
     return object;
 }
 
 static json_t *budget_figure(Document *json, const BudgetFigure *figure)
 {
     json_t *object = json_object();
-    document_put(json, object, "max_abs", real(figure->max_abs));
-    document_put(json, object, "rmse", real(figure->rmse));
-    document_put(json, object, "pixels", count(figure->pixels));
+    document_put(json, object, "max_abs", document_real(figure->max_abs));
+    document_put(json, object, "rmse", document_real(figure->rmse));
+    document_put(json, object, "pixels", document_count(figure->pixels));
     return object;
 }
 
@@ -162,8 +134,8 @@ static json_t *budget(Document *json, const Budget *budget)
     document_put(json, object, "sum", budget_figure(json, &budget->sum));
     document_put(json, object, "total", budget_figure(json, &budget->total));
     document_put(json, object, "unexplained", budget_figure(json, &budget->unexplained));
-    document_put(json, object, "explained", real(budget->explained));
-    document_put(json, object, "nonfinite", count(budget->nonfinite));
+    document_put(json, object, "explained", document_real(budget->explained));
+    document_put(json, object, "nonfinite", document_count(budget->nonfinite));
     return object;
 }
 
@@ -171,7 +143,7 @@ static json_t *classes(Document *json, const Budget *budget)
 {
     json_t *object = json_object();
     for (int i = 0; i < CLASS_COUNT; i++)
-        document_put(json, object, class_key((PixelClass)i), count(budget->counts[i]));
+        document_put(json, object, class_key((PixelClass)i), document_count(budget->counts[i]));
     return object;
 }
 
@@ -180,21 +152,21 @@ static json_t *document(Document *json, const Threeway *report)
     const Frame *ref = &report->frames[RENDERER_REF];
     const MethodInfo *method = method_info(report->desc.method);
     json_t *root = json_object();
-    document_put(json, root, "scene", string(report->scene_path));
+    document_put(json, root, "scene", document_string(report->scene_path));
     document_put(json, root, "size", json_pack("[ii]", report->desc.width, report->desc.height));
-    document_put(json, root, "method", string(method->name));
+    document_put(json, root, "method", document_string(method->name));
     document_put(json, root, "exact", json_boolean(method->exact));
     document_put(json, root, "passes", json_integer(ref->peels));
-    document_put(json, root, "profile", string(report->seed_profile ? "seed" : "default"));
+    document_put(json, root, "profile", document_string(report->seed_profile ? "seed" : "default"));
     document_put(json, root, "fma", json_boolean(ref->fused));
     document_put(json, root, "agree", json_boolean(report->agree));
-    document_put(json, root, "tolerance", real(report->tolerance));
+    document_put(json, root, "tolerance", document_real(report->tolerance));
     document_put(json, root, "renderers", renderers(json, report));
     document_put(json, root, "pairs", pairs(json, report));
     document_put(json, root, "layers", layers(json, report));
     json_t *residual = json_object();
-    document_put(json, residual, "max", real(ref->residual_max));
-    document_put(json, residual, "pixels", count(ref->residual_pixels));
+    document_put(json, residual, "max", document_real(ref->residual_max));
+    document_put(json, residual, "pixels", document_count(ref->residual_pixels));
     document_put(json, root, "residual", residual);
     if (report->budget) {
         document_put(json, root, "budget", budget(json, report->budget));

@@ -67,12 +67,18 @@ typedef struct PlanSearch {
     int best;   /* of the least error */
 } PlanSearch;
 
+typedef struct PlanRequest {
+    PlanSpace space;
+    PlanMetric metric;
+    double max_error;
+} PlanRequest;
+
 /* Measures on this scene: of each method its best settings first, and if these reach max_error,
- * other formats and fewer passes. What cannot be the answer is measured once, what can three
- * times. plan: of the same scene and desc. *out is empty on failure; the caller frees with
- * plan_search_free. */
-Result plan_search(const Scene *scene, const Plan *plan, const PlanSpace *space, const Renderer ref,
-                   const Renderer truth, PlanSearch *out);
+ * other formats and fewer passes. What cannot be the answer is measured once, what can and what is
+ * on the front three times. plan: of the same scene. What does not fit into memory is no choice.
+ * *out is empty on failure; the caller frees with plan_search_free. */
+Result plan_search(const Scene *scene, const Plan *plan, const PlanRequest *request, Renderer ref,
+                   Renderer truth, PlanSearch *out);
 void plan_search_free(PlanSearch *search);
 
 /* The desc of a choice. */
