@@ -214,7 +214,7 @@ GBufferLayout needs_layout(const Needs *needs, const RenderDesc *desc, bool tran
         return none;
     if (!needs_has(needs, NEED_NORMAL))
         layout.normal = FORMAT_NONE;
-    if (!needs_has(needs, NEED_POSITION))
+    if (!needs_lit_position(needs))
         layout.position = FORMAT_NONE;
     if (!needs_has(needs, NEED_MATERIAL))
         layout.material = FORMAT_NONE;

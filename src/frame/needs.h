@@ -60,6 +60,12 @@ static inline bool needs_has(const Needs *needs, NeedId id)
  * fetched. */
 void needs_textures(const Needs *needs, const Scene *scene, const View *view, bool *wanted);
 
+/* Whether the lighting pass of a G-buffer looks at positions; NEED_POSITION is also for weights. */
+static inline bool needs_lit_position(const Needs *needs)
+{
+    return needs->all || needs_has(needs, NEED_LIGHTS);
+}
+
 /* Formats of a list's G-buffer as it is stored, FORMAT_NONE for what is left out: everything of an
  * empty list. (In render_desc_layout a position with FORMAT_NONE is one that is reconstructed.) */
 GBufferLayout needs_layout(const Needs *needs, const RenderDesc *desc, bool transparent);
