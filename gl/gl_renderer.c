@@ -35,6 +35,25 @@ static const GlMethod *const methods[METHOD_COUNT] = {
     [METHOD_PAINTER] = &gl_painter,
 };
 
+/* What stands for the method where there is nothing transparent. */
+static Result create_opaque(Passes *passes, void *into)
+{
+    *(Passes **)into = passes;
+    return RESULT_OK;
+}
+
+static Result draw_opaque(void *of, Frame *out)
+{
+    return passes_opaque_only(*(Passes **)of, out);
+}
+
+static void destroy_opaque(void *of)
+{
+    (void)of;
+}
+
+static const GlMethod opaque_only = {sizeof(Passes *), create_opaque, draw_opaque, destroy_opaque};
+
 /* Triangles of a batch that needed clipping are set up in the calling thread, where Mesa does not
  * itself flush denormals as its own threads do. So all of it runs in flushing mode; the functions
  * that do are not inlined: see op_enter. */
@@ -67,6 +86,8 @@ static __attribute__((noinline)) Result set_up(GlSession *session, Frame *unused
     result = passes_create(&in, &session->passes);
     if (result != RESULT_OK)
         return result;
+    if (!needs_has(&session->passes.needs, NEED_TRANSPARENT) && !session->passes.options.every_pass)
+        session->method = &opaque_only;
     session->state = memory_array(1, session->method->state_size);
     if (!session->state)
         return RESULT_NO_MEMORY;

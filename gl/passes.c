@@ -22,12 +22,28 @@ enum {
     UNIFORM_AMBIENT = 16,
     UNIFORM_DEPTH_TO_Z,
     UNIFORM_RAY,
+    UNIFORM_CONSTANT_MATERIAL,
     UNIFORM_BACKGROUND = 0 /* of resolve.frag, which has no mesh */
 };
 
 /* ---- programs ---- */
 
-/* The switches that follow from desc, the formats and the scene. */
+static bool has(const Passes *passes, NeedId id)
+{
+    return needs_has(&passes->needs, id);
+}
+
+static bool is_textured(const Passes *passes)
+{
+    return has(passes, NEED_BASE_COLOR_TEXTURE) || has(passes, NEED_MATERIAL_TEXTURE);
+}
+
+static bool reconstructs(const Passes *passes)
+{
+    return render_desc_layout(passes->desc).position == FORMAT_NONE;
+}
+
+/* The switches that follow from desc, the formats and what is needed. */
 static void write_defines(const Passes *passes, const char *defines, char *out, size_t size)
 {
     static const char *const outputs[GBUFFER_TARGETS] = {"NORMAL", "POSITION", "DIFFUSE",
@@ -43,11 +59,18 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
         bool on;
         const char *name;
     } switches[] = {
-        {passes->textures.count > 0, "TEXTURED"},
+        {is_textured(passes), "TEXTURED"},
+        {has(passes, NEED_BASE_COLOR_TEXTURE), "BASE_COLOR_TEXTURE"},
+        {has(passes, NEED_MATERIAL_TEXTURE), "MATERIAL_TEXTURE"},
+        {has(passes, NEED_MASK), "MASKED"},
+        {has(passes, NEED_CULLING), "CULLED"},
+        {desc->normals == NORMALS_FACED && has(passes, NEED_FACING), "FACED"},
+        {!has(passes, NEED_NORMAL), "NO_NORMAL"},
+        {!needs_lit_position(&passes->needs), "NO_POSITION"},
+        {!has(passes, NEED_MATERIAL), "CONSTANT_MATERIAL"},
         {targets->color_format[GBUFFER_NORMAL] == FORMAT_RG16, "OCTAHEDRAL"},
-        {targets->color_format[GBUFFER_POSITION] == FORMAT_NONE, "RECONSTRUCT"},
+        {reconstructs(passes), "RECONSTRUCT"},
         {desc->depth_range == DEPTH_RANGE_REVERSED, "REVERSED"},
-        {desc->normals == NORMALS_FACED, "FACED"},
         {desc->peel_test == PEEL_TEST_RAW, "TEST_RAW"},
         {targets->depth_format == FORMAT_D24, "DEPTH_24"},
         {targets->depth_format == FORMAT_D16, "DEPTH_16"},
@@ -132,32 +155,46 @@ Result passes_geometry_program(const Passes *passes, const char *name, const cha
     return passes_program(passes, name, text, &source, out);
 }
 
-static Result build_programs(Passes *passes)
+/* Of the lighting pass of one list; nothing where nothing is in it. */
+static Result build_lighting(const Passes *passes, const char *name, bool transparent, GLuint *out)
 {
     const RenderDesc *desc = passes->desc;
     const PassesSource deferred = {.octahedral = true,
                                    .shade = true,
-                                   .unproject = passes->targets.color_format[GBUFFER_POSITION] ==
-                                                FORMAT_NONE,
+                                   .unproject = reconstructs(passes),
                                    .main = shader_lighting_frag};
     const PassesSource composed = {.main = shader_compose_frag};
     const PassesSource lighting = desc->method == METHOD_FORWARD ? composed : deferred;
+    char defines[48];
+    snprintf(defines, sizeof defines, "%s%s", render_desc_edges(desc) ? "#define EDGES\n" : "",
+             transparent && desc->back_light ? "#define BACK_LIGHT\n" : "");
+    Result result = RESULT_OK;
+    if (has(passes, transparent ? NEED_TRANSPARENT : NEED_OPAQUE))
+        result = passes_program(passes, name, defines, &lighting, out);
+    if (result != RESULT_OK || !*out || has(passes, NEED_MATERIAL) ||
+        lighting.main != deferred.main)
+        return result;
+    float material[4];
+    needs_material(&passes->needs, desc, transparent, material);
+    gl.ProgramUniform3fv(*out, UNIFORM_CONSTANT_MATERIAL, 1, material);
+    return RESULT_OK;
+}
+
+static Result build_programs(Passes *passes)
+{
     const PassesSource resolve = {.main = shader_resolve_frag};
-    const char *edges = render_desc_edges(desc) ? "#define EDGES\n" : "";
-    char peel[48];
-    snprintf(peel, sizeof peel, "%s%s", edges, desc->back_light ? "#define BACK_LIGHT\n" : "");
-    Result result =
-        passes_geometry_program(passes, "opaque geometry", "", &passes->opaque_geometry);
+    bool opaque = has(passes, NEED_OPAQUE);
+    bool seed = passes->desc->opaque_blend == OPAQUE_BLEND_SEED && opaque;
+    Result result = RESULT_OK;
+    if (opaque)
+        result = passes_geometry_program(passes, "opaque geometry", "", &passes->opaque_geometry);
     if (result == RESULT_OK)
-        result =
-            passes_program(passes, "opaque lighting", edges, &lighting, &passes->opaque_lighting);
+        result = build_lighting(passes, "opaque lighting", false, &passes->opaque_lighting);
     if (result == RESULT_OK)
-        result = passes_program(passes, "peel lighting", peel, &lighting, &passes->peel_lighting);
+        result = build_lighting(passes, "peel lighting", true, &passes->peel_lighting);
     if (result == RESULT_OK)
-        result =
-            passes_program(passes, "resolve",
-                           desc->opaque_blend == OPAQUE_BLEND_SEED ? "#define SEED_BLEND\n" : "",
-                           &resolve, &passes->resolve);
+        result = passes_program(passes, "resolve", seed ? "#define SEED_BLEND\n" : "", &resolve,
+                                &passes->resolve);
     return result;
 }
 
@@ -182,17 +219,30 @@ void passes_begin(const Passes *passes)
     gl.BindVertexArray(passes->meshes.vertex_array);
 }
 
+static Result upload_wanted_textures(Passes *passes)
+{
+    const Scene *scene = passes->scene;
+    bool *wanted = memory_array(scene->texture_count, sizeof *wanted);
+    if (!wanted)
+        return RESULT_NO_MEMORY;
+    needs_textures(&passes->needs, scene, passes->view, wanted);
+    Result result = upload_textures(passes->context, scene, wanted, passes->desc,
+                                    passes->targets.bytes, &passes->textures);
+    free(wanted);
+    return result;
+}
+
 static Result make(Passes *out)
 {
     const RenderDesc *desc = out->desc;
-    Result result = targets_create(out->context, desc, &out->targets);
+    needs_derive(out->scene, out->view, desc, out->trace != NULL, &out->needs);
+    Result result = targets_create(out->context, desc, &out->needs, &out->targets);
     if (result == RESULT_OK)
-        result = upload_meshes(out->context, out->scene, &out->meshes);
+        result = upload_meshes(out->context, out->scene, &out->needs, &out->meshes);
     if (result == RESULT_OK)
         result = upload_lights(out->context, out->view, &out->lights);
     if (result == RESULT_OK)
-        result =
-            upload_textures(out->context, out->scene, desc, out->targets.bytes, &out->textures);
+        result = upload_wanted_textures(out);
     if (result == RESULT_OK)
         result = build_programs(out);
     if (result == RESULT_OK && out->trace) {
@@ -257,14 +307,15 @@ static void bind_texture(const Passes *passes, GLuint program, uint32_t number, 
 static void bind_textures(const Passes *passes, GLuint program, const Draw *item)
 {
     const Material *material = &passes->scene->materials[item->material];
-    if (passes->textures.count == 0)
-        return;
-    bind_texture(passes, program, material->base_color_texture, UNIT_BASE_COLOR,
-                 UNIFORM_BASE_COLOR_SAMPLER);
-    bind_texture(passes, program, material->metallic_roughness_texture, UNIT_METALLIC_ROUGHNESS,
-                 UNIFORM_METALLIC_ROUGHNESS_SAMPLER);
-    gl.ProgramUniform1f(program, UNIFORM_ALPHA_CUTOFF,
-                        item->masked ? material->alpha_cutoff : 0.0f);
+    if (has(passes, NEED_BASE_COLOR_TEXTURE))
+        bind_texture(passes, program, material->base_color_texture, UNIT_BASE_COLOR,
+                     UNIFORM_BASE_COLOR_SAMPLER);
+    if (has(passes, NEED_MATERIAL_TEXTURE))
+        bind_texture(passes, program, material->metallic_roughness_texture, UNIT_METALLIC_ROUGHNESS,
+                     UNIFORM_METALLIC_ROUGHNESS_SAMPLER);
+    if (has(passes, NEED_MASK))
+        gl.ProgramUniform1f(program, UNIFORM_ALPHA_CUTOFF,
+                            item->masked ? material->alpha_cutoff : 0.0f);
 }
 
 void passes_use_draw(const Passes *passes, GLuint program, const Draw *draw)
@@ -275,7 +326,8 @@ void passes_use_draw(const Passes *passes, GLuint program, const Draw *draw)
     gl.ProgramUniformMatrix3fv(program, UNIFORM_NORMAL_MATRIX, 1, GL_FALSE, draw->normal_matrix);
     gl.ProgramUniform4fv(program, UNIFORM_BASE_COLOR, 1, material->base_color);
     gl.ProgramUniform3fv(program, UNIFORM_MATERIAL, 1, surface);
-    gl.ProgramUniform1i(program, UNIFORM_CULL_BACK, draw->cull_back);
+    if (has(passes, NEED_CULLING))
+        gl.ProgramUniform1i(program, UNIFORM_CULL_BACK, draw->cull_back);
     gl.ProgramUniform1i(program, UNIFORM_FLIPPED, draw->flipped);
     bind_textures(passes, program, draw);
 }
@@ -352,7 +404,7 @@ void passes_clear_layer(const Passes *passes, const Layer *layer)
 {
     static const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     const float far = passes->desc->depth_range == DEPTH_RANGE_REVERSED ? 0.0f : 1.0f;
-    for (int i = 0; i < passes->targets.color_count; i++)
+    for (int i = 0; i < passes->targets.color_count && layer->color[GBUFFER_DIFFUSE]; i++)
         gl.ClearNamedFramebufferfv(layer->buffer, GL_COLOR, i, zero);
     gl.ClearNamedFramebufferfv(layer->buffer, GL_DEPTH, 0, &far);
 }
@@ -380,8 +432,10 @@ Result passes_end_opaque(Passes *passes)
 
 Result passes_opaque(Passes *passes)
 {
+    Result result = RESULT_OK;
     passes_begin_opaque(passes);
-    Result result = passes_draw_counted(passes, passes->opaque_geometry, false, NULL);
+    if (has(passes, NEED_OPAQUE))
+        result = passes_draw_counted(passes, passes->opaque_geometry, false, NULL);
     return result == RESULT_OK ? passes_end_opaque(passes) : result;
 }
 
@@ -447,8 +501,16 @@ Result passes_finish(Passes *passes, int peels)
         gl.BlendFunc(GL_DST_ALPHA, GL_ONE);
     else
         passes_blend_under();
-    light(passes, passes->opaque_lighting, &passes->targets.opaque);
+    if (has(passes, NEED_OPAQUE))
+        light(passes, passes->opaque_lighting, &passes->targets.opaque);
     return passes_trace_accum(passes, "accum", peels + 1);
+}
+
+Result passes_opaque_only(Passes *passes, Frame *out)
+{
+    Result result = passes_opaque(passes);
+    out->geometry_passes = 1; /* what a method would find out with */
+    return result == RESULT_OK ? passes_finish(passes, 0) : result;
 }
 
 static void read_accum(const Passes *passes)

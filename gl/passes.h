@@ -5,6 +5,7 @@
 #ifndef PEEL_GL_PASSES_H
 #define PEEL_GL_PASSES_H
 
+#include "frame/needs.h"
 #include "gl_renderer.h"
 #include "targets.h"
 #include "upload.h"
@@ -14,6 +15,7 @@ typedef struct Passes {
     const Scene *scene; /* borrowed */
     const RenderDesc *desc;
     const View *view;
+    Needs needs;
     TraceSink *trace; /* may be NULL */
     GlOptions options;
     void *pixels; /* scratch for read-back, 16 bytes a pixel; NULL without a trace */
@@ -100,6 +102,8 @@ void passes_light_layer(const Passes *passes, const Layer *layer);
 /* Shades the opaque G-buffer and puts it behind the accumulation, as desc->opaque_blend says;
  * traces the accumulation as the step after `peels`. */
 Result passes_finish(Passes *passes, int peels);
+/* A whole frame, but for passes_resolve, of a scene without transparent surfaces. */
+Result passes_opaque_only(Passes *passes, Frame *out);
 /* The accumulation as it is now to the trace, if there is one: under that name, or as that of a
  * peel. */
 Result passes_trace_accum(const Passes *passes, const char *name, int step);

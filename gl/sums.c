@@ -29,7 +29,7 @@ Result sums_create(Passes *passes, const SumsMethod *method, void *state)
     Targets *targets = &passes->targets;
     sums->passes = passes;
     sums->method = *method;
-    sums->format[0] = targets->accum_format == FORMAT_RGBA32F ? FORMAT_RGBA32F : FORMAT_RGBA16F;
+    sums->format[0] = render_desc_sum_format(passes->desc);
     sums->format[1] = FORMAT_R32F;
     sums->count = *sums->method.second ? 2 : 1;
     sums->pixels = memory_array((size_t)targets->width * (size_t)targets->height,

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void choose_formats(const RenderDesc *desc, Targets *out)
+static void choose_formats(const RenderDesc *desc, const Needs *needs, Targets *out)
 {
-    GBufferLayout layout = render_desc_layout(desc);
+    GBufferLayout layout = needs_layout(needs, desc, needs_has(needs, NEED_TRANSPARENT));
     out->depth_format = render_desc_depth(desc);
     out->accum_format = desc->accum;
     out->lit = desc->method == METHOD_FORWARD;
@@ -19,17 +19,6 @@ static void choose_formats(const RenderDesc *desc, Targets *out)
     out->color_format[GBUFFER_MATERIAL] = layout.material;
     for (int i = 0; i < GBUFFER_TARGETS; i++)
         out->attachment[i] = out->color_format[i] == FORMAT_NONE ? -1 : out->color_count++;
-}
-
-bool targets_needs_code(const RenderDesc *desc)
-{
-    return render_desc_depth(desc) == FORMAT_D24 && desc->peel_test == PEEL_TEST_STORED;
-}
-
-bool targets_needs_previous_code(const RenderDesc *desc)
-{
-    return targets_needs_code(desc) && desc->depth_range == DEPTH_RANGE_REVERSED &&
-           !(desc->bias > 0.0f);
 }
 
 static Result check_limits(const Context *context, const RenderDesc *desc)
@@ -145,12 +134,22 @@ void targets_destroy_layer(Layer *layer, bool shares_color)
     *layer = (Layer){0};
 }
 
-static Result make(const RenderDesc *desc, Targets *out)
+static Result make_opaque(const Needs *needs, Targets *out)
+{
+    if (needs_has(needs, NEED_OPAQUE))
+        return targets_layer(out, NULL, &out->opaque);
+    Result result = targets_texture(out, out->depth_format, &out->opaque.depth);
+    return result == RESULT_OK
+               ? targets_framebuffer(0, NULL, out->opaque.depth, &out->opaque.buffer)
+               : result;
+}
+
+static Result make(const RenderDesc *desc, const Needs *needs, Targets *out)
 {
     Result result = targets_texture(out, out->accum_format, &out->accum);
     if (result == RESULT_OK)
-        result = targets_layer(out, NULL, &out->opaque);
-    if (result == RESULT_OK && targets_needs_code(desc))
+        result = make_opaque(needs, out);
+    if (result == RESULT_OK && render_desc_needs_code(desc))
         result = targets_texture(out, FORMAT_R32UI, &out->opaque_code);
     if (result == RESULT_OK)
         result = targets_texture(out, FORMAT_RGBA32F, &out->final);
@@ -164,15 +163,15 @@ static Result make(const RenderDesc *desc, Targets *out)
     return result;
 }
 
-Result targets_create(Context *context, const RenderDesc *desc, Targets *out)
+Result targets_create(Context *context, const RenderDesc *desc, const Needs *needs, Targets *out)
 {
     *out = (Targets){.width = desc->width,
                      .height = desc->height,
                      .limit = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT};
-    choose_formats(desc, out);
+    choose_formats(desc, needs, out);
     Result result = check_limits(context, desc);
     if (result == RESULT_OK)
-        result = make(desc, out);
+        result = make(desc, needs, out);
     if (result == RESULT_OK)
         result = context_check(context, "framebuffers");
     if (result != RESULT_OK)

@@ -5,7 +5,7 @@
 #define PEEL_GL_TARGETS_H
 
 #include "context.h"
-#include "frame/render_desc.h"
+#include "frame/needs.h"
 
 enum {
     GBUFFER_NORMAL,
@@ -24,12 +24,13 @@ typedef struct Layer {
 typedef struct Targets {
     int width, height;
     PixelFormat depth_format, accum_format;
-    PixelFormat color_format[GBUFFER_TARGETS]; /* FORMAT_NONE: not stored */
-    int attachment[GBUFFER_TARGETS];           /* its draw buffer and shader output; −1: none */
-    int color_count;                           /* of those stored */
-    bool lit;                                  /* diffuse holds lit colours (METHOD_FORWARD) */
-    Layer opaque;
-    GLuint opaque_code; /* see targets_needs_code; 0 where it is not needed */
+    /* Of both lists' G-buffers. FORMAT_NONE: not stored, or not needed. */
+    PixelFormat color_format[GBUFFER_TARGETS];
+    int attachment[GBUFFER_TARGETS]; /* its draw buffer and shader output; −1: none */
+    int color_count;                 /* of those stored */
+    bool lit;                        /* diffuse holds lit colours (METHOD_FORWARD) */
+    Layer opaque;                    /* of an empty list: its depth alone */
+    GLuint opaque_code;              /* see render_desc_needs_code; 0 where it is not needed */
     GLuint accum, final, display;
     GLuint plain_buffer, resolve_buffer; /* framebuffers of accum; of final and display */
     size_t bytes, limit;                 /* of the textures; the caller's --max-memory */
@@ -37,7 +38,7 @@ typedef struct Targets {
 
 /* Makes all of it. BAD_INPUT when desc's size passes a limit of the driver's, NO_MEMORY when it
  * needs more than desc->max_memory (4 GiB if 0); *out is then empty. */
-Result targets_create(Context *context, const RenderDesc *desc, Targets *out);
+Result targets_create(Context *context, const RenderDesc *desc, const Needs *needs, Targets *out);
 void targets_destroy(Targets *targets); /* leaves an empty one */
 
 /* Accounts for bytes about to be allocated; NO_MEMORY and a message past the limit. */
@@ -61,11 +62,6 @@ Result targets_framebuffer(int count, const GLuint *color, GLuint depth, GLuint 
 Result targets_layer(Targets *targets, const Layer *shared, Layer *out);
 void targets_destroy_layer(Layer *layer, bool shares_color); /* leaves an empty one */
 
-/* Only a 24-bit depth compared as stored is ambiguous when it is fetched as a float: the two
- * greatest are both 1. The opaque depth can be either of them, a previous peel's only where the
- * near plane is at 1. Then a R32UI copy of the integers is needed. A bias is added to floats. */
-bool targets_needs_code(const RenderDesc *desc);
-bool targets_needs_previous_code(const RenderDesc *desc);
 /* Copies the depth integers of framebuffer to a code texture; nothing where it is 0. */
 Result targets_copy_code(const Targets *targets, GLuint framebuffer, GLuint code);
 

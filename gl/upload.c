@@ -42,12 +42,15 @@ enum {
 };
 
 /* Positions of all meshes first, then normals, then uvs. */
-static size_t lay_out_attributes(size_t vertex_count, bool textured, Attribute out[ATTRIBUTES])
+static size_t lay_out_attributes(size_t vertex_count, const Needs *needs, Attribute out[ATTRIBUTES])
 {
-    static const GLint components[ATTRIBUTES] = {3, 3, 2};
+    bool textured =
+        needs_has(needs, NEED_BASE_COLOR_TEXTURE) || needs_has(needs, NEED_MATERIAL_TEXTURE);
+    const GLint components[ATTRIBUTES] = {3, needs_has(needs, NEED_NORMAL) ? 3 : 0,
+                                          textured ? 2 : 0};
     size_t at = 0;
     for (int i = 0; i < ATTRIBUTES; i++) {
-        out[i] = (Attribute){i < 2 || textured ? components[i] : 0, (GLintptr)at};
+        out[i] = (Attribute){components[i], (GLintptr)at};
         at += vertex_count * (size_t)out[i].components * sizeof(float);
     }
     return at;
@@ -101,7 +104,7 @@ static GLuint make_buffer(size_t bytes)
     return buffer;
 }
 
-Result upload_meshes(Context *context, const Scene *scene, Meshes *out)
+Result upload_meshes(Context *context, const Scene *scene, const Needs *needs, Meshes *out)
 {
     *out = (Meshes){0};
     out->ranges = memory_array(scene->mesh_count, sizeof *out->ranges);
@@ -111,8 +114,7 @@ Result upload_meshes(Context *context, const Scene *scene, Meshes *out)
     Result result = lay_out(scene, out, &vertex_count, &index_count);
     if (result == RESULT_OK) {
         Attribute attributes[ATTRIBUTES];
-        size_t vertex_bytes =
-            lay_out_attributes(vertex_count, scene->texture_count > 0, attributes);
+        size_t vertex_bytes = lay_out_attributes(vertex_count, needs, attributes);
         size_t index_bytes = index_count * sizeof(uint32_t);
         out->bytes = vertex_bytes + index_bytes;
         out->vertices = make_buffer(vertex_bytes);
@@ -173,8 +175,8 @@ void upload_free_lights(LightBuffer *lights)
     *lights = (LightBuffer){0};
 }
 
-static Result check_textures(const Context *context, const Scene *scene, const RenderDesc *desc,
-                             size_t used, size_t *bytes)
+static Result check_textures(const Context *context, const Scene *scene, const bool *wanted,
+                             const RenderDesc *desc, size_t used, size_t *bytes)
 {
     uint32_t side = (uint32_t)context_limits(context)->texture_size;
     for (size_t i = 0; i < scene->texture_count; i++) {
@@ -183,7 +185,8 @@ static Result check_textures(const Context *context, const Scene *scene, const R
             return result_fail(RESULT_BAD_INPUT,
                                "texture %zu: %u×%u texels: the OpenGL driver allows %u a side", i,
                                texture->width, texture->height, side);
-        *bytes += (size_t)texture->width * texture->height * 4 * sizeof(float);
+        if (wanted[i])
+            *bytes += (size_t)texture->width * texture->height * 4 * sizeof(float);
     }
     size_t most = desc->max_memory ? desc->max_memory : RENDER_MEMORY_DEFAULT;
     if (*bytes > 0 && (used > most || *bytes > most - used))
@@ -194,19 +197,21 @@ static Result check_textures(const Context *context, const Scene *scene, const R
     return RESULT_OK;
 }
 
-Result upload_textures(Context *context, const Scene *scene, const RenderDesc *desc, size_t used,
-                       Textures *out)
+Result upload_textures(Context *context, const Scene *scene, const bool *wanted,
+                       const RenderDesc *desc, size_t used, Textures *out)
 {
     *out = (Textures){0};
-    Result result = check_textures(context, scene, desc, used, &out->bytes);
+    Result result = check_textures(context, scene, wanted, desc, used, &out->bytes);
     if (result != RESULT_OK || scene->texture_count == 0)
         return result;
     out->names = memory_array(scene->texture_count, sizeof *out->names);
     if (!out->names)
         return RESULT_NO_MEMORY;
     out->count = scene->texture_count;
-    gl.CreateTextures(GL_TEXTURE_2D, (GLsizei)out->count, out->names);
     for (size_t i = 0; i < out->count; i++) {
+        if (!wanted[i])
+            continue;
+        gl.CreateTextures(GL_TEXTURE_2D, 1, &out->names[i]);
         const Texture *texture = &scene->textures[i];
         GLsizei width = (GLsizei)texture->width, height = (GLsizei)texture->height;
         gl.TextureStorage2D(out->names[i], 1, GL_RGBA32F, width, height);

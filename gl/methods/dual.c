@@ -35,9 +35,7 @@ typedef struct Dual {
 
 static PixelFormat target_format(const RenderDesc *desc, int target)
 {
-    if (desc->gbuffer == GBUFFER_FULL)
-        return FORMAT_RGBA32F;
-    return target == TARGET_NORMAL ? FORMAT_RGBA16 : FORMAT_RGBA8;
+    return render_desc_dual_format(desc, target == TARGET_NORMAL);
 }
 
 /* ---- objects ---- */

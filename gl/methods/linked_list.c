@@ -14,7 +14,7 @@
  * pass puts the front node at the head. That is a pass of its own because llvmpipe 22.3.6 looks up
  * wrong materials in a loop behind one whose lanes leave at different turns.
  *
- * Without desc->nodes_per_pixel the buffer has room for GUESS nodes a pixel, and when the counter
+ * Without desc->nodes_per_pixel the buffer has room for NODES_GUESSED nodes a pixel, and when the counter
  * shows that there are more, for as many as there are: then geometry was drawn twice. The buffer
  * may be larger than the driver promises to reach in a block: llvmpipe says 2^27 bytes and reaches
  * all. So the last node is read back, and where it was not stored the frame is refused. */
@@ -29,10 +29,8 @@
 #include <stdlib.h>
 
 enum {
-    GUESS = 4,
     SORTED_MAX = 300,
-    PIXEL_NODES_MAX = 65000,
-    HEADER_WORDS = 4
+    PIXEL_NODES_MAX = 65000
 };
 /* Uniform locations and storage blocks of shaders/linked_list.frag.glsl. */
 enum {
@@ -161,7 +159,7 @@ static Result create(Passes *passes, void *into)
     state->passes = passes;
     size_t pixels = (size_t)passes->desc->width * (size_t)passes->desc->height;
     state->words = node_words(passes->scene);
-    state->heads_bytes = (HEADER_WORDS + pixels) * sizeof(uint32_t);
+    state->heads_bytes = (NODES_HEADER_WORDS + pixels) * sizeof(uint32_t);
     Result result = build_programs(state);
     if (result == RESULT_OK)
         result = make_layer(state);
@@ -269,12 +267,12 @@ static Result draw_lists(Lists *state)
     return context_check(passes->context, "list pass");
 }
 
-/* As many as fit the limits, up to GUESS a pixel. */
+/* As many as fit the limits, up to NODES_GUESSED a pixel. */
 static uint64_t guess(const Lists *state)
 {
     const Targets *targets = &state->passes->targets;
     uint64_t node = node_bytes(state);
-    uint64_t nodes = GUESS * (uint64_t)targets->width * (uint64_t)targets->height;
+    uint64_t nodes = NODES_GUESSED * (uint64_t)targets->width * (uint64_t)targets->height;
     uint64_t left = (targets->limit - targets->bytes) / node;
     uint64_t block = (uint64_t)context_limits(state->passes->context)->storage_block / node;
     nodes = nodes < left ? nodes : left;

@@ -21,7 +21,7 @@ typedef struct Peel {
     Frame *frame;
     GLuint first, next;   /* programs */
     Layer layers[2];      /* take turns: a depth each, and one set of colours */
-    GLuint previous_code; /* see targets_needs_previous_code */
+    GLuint previous_code; /* see render_desc_needs_previous_code */
     /* Read back by the raw test to see repeated layers; NULL otherwise. */
     uint32_t *depth[2]; /* this peel's and the previous one's, as bits */
     void *material;
@@ -42,7 +42,7 @@ static Result create(Passes *passes, void *into)
         result = targets_layer(&passes->targets, NULL, &state->layers[0]);
     if (result == RESULT_OK)
         result = targets_layer(&passes->targets, &state->layers[0], &state->layers[1]);
-    if (result == RESULT_OK && targets_needs_previous_code(desc))
+    if (result == RESULT_OK && render_desc_needs_previous_code(desc))
         result = targets_texture(&passes->targets, FORMAT_R32UI, &state->previous_code);
     if (result != RESULT_OK || desc->peel_test != PEEL_TEST_RAW)
         return result;

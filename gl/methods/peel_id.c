@@ -27,7 +27,7 @@ typedef struct PeelId {
     Layer layers[2];        /* take turns: a depth each, and one set of colours */
     GLuint depth_buffer[2]; /* framebuffers of the depths alone */
     GLuint rank[2], rank_buffer[2];
-    GLuint previous_code; /* see targets_needs_previous_code: here whatever the peel test */
+    GLuint previous_code; /* see render_desc_needs_previous_code: here whatever the peel test */
 } PeelId;
 
 /* ---- set-up ---- */
@@ -69,8 +69,7 @@ static Result create(Passes *passes, void *into)
         if (result == RESULT_OK)
             result = targets_framebuffer(1, &state->rank[i], 0, &state->rank_buffer[i]);
     }
-    if (result == RESULT_OK && targets->depth_format == FORMAT_D24 &&
-        passes->desc->depth_range == DEPTH_RANGE_REVERSED)
+    if (result == RESULT_OK && render_desc_needs_previous_code(passes->desc))
         result = targets_texture(targets, FORMAT_R32UI, &state->previous_code);
     return result;
 }

@@ -3,35 +3,54 @@
 //
 // OCTAHEDRAL       normals are stored in two channels
 // RECONSTRUCT      the position follows from the stored depth
+// NO_NORMAL        normals are not stored, since nothing depends on them
+// NO_POSITION      nor are positions
+// CONSTANT_MATERIAL   all that is shaded has one material
 // ACCUM_CLAMP(c)   clamps a colour where the accumulation has 8 bits a channel
 // EDGES            outlines: fragments that differ from a neighbour are black
 
+#ifndef NO_NORMAL
 layout(binding = 0) uniform sampler2D normal_buffer;
+#endif
 #ifdef RECONSTRUCT
 layout(binding = 1) uniform sampler2D depth_buffer;
-#else
+#elif !defined(NO_POSITION)
 layout(binding = 1) uniform sampler2D position_buffer;
 #endif
 layout(binding = 2) uniform sampler2D diffuse_buffer;
+#ifdef CONSTANT_MATERIAL
+layout(location = 19) uniform vec3 constant_material; // as a fetch would give it
+#else
 layout(binding = 3) uniform sampler2D material_buffer;
+#endif
 
 layout(location = 0) out vec4 source;
 
-#ifdef RECONSTRUCT
 vec3 fetch_position(ivec2 pixel)
 {
+#if defined(NO_POSITION)
+    return vec3(0.0);
+#elif defined(RECONSTRUCT)
     return unproject(pixel, texelFetch(depth_buffer, pixel, 0).r);
-}
 #else
-vec3 fetch_position(ivec2 pixel)
-{
     return texelFetch(position_buffer, pixel, 0).xyz;
-}
 #endif
+}
+
+vec3 fetch_material(ivec2 pixel)
+{
+#ifdef CONSTANT_MATERIAL
+    return constant_material;
+#else
+    return texelFetch(material_buffer, pixel, 0).xyz;
+#endif
+}
 
 vec3 fetch_normal(ivec2 pixel)
 {
-#ifdef OCTAHEDRAL
+#if defined(NO_NORMAL)
+    return vec3(0.0);
+#elif defined(OCTAHEDRAL)
     return decode_octahedral(texelFetch(normal_buffer, pixel, 0).xy);
 #else
     return texelFetch(normal_buffer, pixel, 0).xyz;
@@ -66,8 +85,7 @@ void main()
     if (diffuse_alpha.a <= ALPHA_TEST)
         discard;
     vec3 N = fetch_normal(pixel), P = fetch_position(pixel);
-    vec3 material = texelFetch(material_buffer, pixel, 0).xyz;
-    source = shade(N, P, diffuse_alpha, material);
+    source = shade(N, P, diffuse_alpha, fetch_material(pixel));
 #ifdef EDGES
     if (is_edge(pixel, N, -P.z))
         source.rgb = vec3(0.0);

@@ -1,8 +1,10 @@
 // What a fragment's surface is: normal, base colour and material, from varyings, uniforms and
 // textures. Discards what culling and the alpha mask leave out.
 //
-// TEXTURED       the scene has textures
-// FACED          normals are turned to the viewer
+// TEXTURED             some textures are fetched: BASE_COLOR_TEXTURE, MATERIAL_TEXTURE
+// MASKED               some materials have an alpha mask
+// CULLED               back faces of some materials are culled
+// FACED                normals are turned to the viewer
 
 layout(location = 0) in vec3 v_position;
 layout(location = 1) in vec3 v_normal;
@@ -12,16 +14,20 @@ layout(location = 2) in vec2 v_uv;
 
 layout(location = 3) uniform vec4 base_color;
 layout(location = 4) uniform vec3 material;   // roughness, metallic, occlusion
+#ifdef CULLED
 layout(location = 5) uniform bool cull_back;
+#endif
 layout(location = 6) uniform bool flipped;    // the model matrix mirrors
 #ifdef TEXTURED
 // 1 where there is a texture; wrap of s and t: 0 repeat, 1 clamp, 2 mirror; 1 for nearest.
+#ifdef BASE_COLOR_TEXTURE
 layout(location = 7) uniform ivec4 base_color_sampler;
-layout(location = 8) uniform ivec4 metallic_roughness_sampler;
-layout(location = 9) uniform float alpha_cutoff; // 0 unless masked
-
 layout(binding = 2) uniform sampler2D base_color_texture;
+#endif
+#ifdef MATERIAL_TEXTURE
+layout(location = 8) uniform ivec4 metallic_roughness_sampler;
 layout(binding = 3) uniform sampler2D metallic_roughness_texture;
+#endif
 
 int wrapped_index(int i, int size, int wrap)
 {
@@ -68,6 +74,10 @@ vec4 sample_texture(sampler2D image, ivec4 how)
 }
 #endif
 
+#ifdef MASKED
+layout(location = 9) uniform float alpha_cutoff; // 0 unless masked
+#endif
+
 struct Surface {
     vec3 normal;   // view space
     vec4 base;     // with the material's alpha, blended or not
@@ -81,7 +91,11 @@ bool is_front()
 
 bool is_culled()
 {
+#ifdef CULLED
     return cull_back && !is_front();
+#else
+    return false;
+#endif
 }
 
 Surface surface_at()
@@ -89,11 +103,15 @@ Surface surface_at()
     Surface surface;
     precise vec4 base = base_color;
     precise vec3 factors = material;
-#ifdef TEXTURED
+#ifdef BASE_COLOR_TEXTURE
     if (base_color_sampler.x != 0)
         base *= sample_texture(base_color_texture, base_color_sampler);
+#endif
+#ifdef MATERIAL_TEXTURE
     if (metallic_roughness_sampler.x != 0)
         factors.xy *= sample_texture(metallic_roughness_texture, metallic_roughness_sampler).gb;
+#endif
+#ifdef MASKED
     if (base.a < alpha_cutoff)
         discard;
 #endif

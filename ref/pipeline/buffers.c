@@ -1,16 +1,15 @@
 #include "ref/pipeline/buffers.h"
 
-Result gbuffer_create(const RenderDesc *desc, GBuffer *out)
+Result gbuffer_create(const RenderDesc *desc, const GBufferLayout *layout, GBuffer *out)
 {
-    GBufferLayout layout = render_desc_layout(desc);
     *out = (GBuffer){0};
     struct {
         Image *image;
         PixelFormat format;
     } images[] = {
-        {&out->depth, render_desc_depth(desc)}, {&out->normal, layout.normal},
-        {&out->position, layout.position},      {&out->diffuse, layout.diffuse},
-        {&out->material, layout.material},      {&out->primitive, FORMAT_R32UI},
+        {&out->depth, render_desc_depth(desc)}, {&out->normal, layout->normal},
+        {&out->position, layout->position},     {&out->diffuse, layout->diffuse},
+        {&out->material, layout->material},     {&out->primitive, FORMAT_R32UI},
     };
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         images[i].image->format = images[i].format;

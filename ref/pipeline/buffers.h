@@ -13,14 +13,14 @@ typedef struct Texel {
     float normal[4], position[4], diffuse[4], material[4];
 } Texel;
 
-/* A full-size G-buffer with its depth; primitive ids beside it are for statistics only. position
- * may have FORMAT_NONE and no pixels. */
+/* A full-size G-buffer with its depth; primitive ids beside it are for statistics only. Colours may
+ * have FORMAT_NONE and no pixels. */
 typedef struct GBuffer {
     Image depth, normal, position, diffuse, material, primitive;
 } GBuffer;
 
-/* Cleared. The caller frees with gbuffer_free. */
-Result gbuffer_create(const RenderDesc *desc, GBuffer *out);
+/* Cleared; layout: which colours it has. The caller frees with gbuffer_free. */
+Result gbuffer_create(const RenderDesc *desc, const GBufferLayout *layout, GBuffer *out);
 void gbuffer_free(GBuffer *buffers);
 /* Colours to 0, depth to the far end, primitive to UINT32_MAX. */
 void gbuffer_clear(GBuffer *buffers, DepthRange range);

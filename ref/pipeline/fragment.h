@@ -27,21 +27,22 @@ static inline float fragment_inverse_w(const Pass *pass, const Setup *setup, int
 }
 
 /* What the material and its textures at uv give: base colour and alpha, roughness and metallic. */
-static inline void fragment_material(const Scene *scene, const Material *material,
-                                     const float uv[2], float base[4], float surface[2])
+static inline void fragment_material(const Pass *pass, const Material *material, const float uv[2],
+                                     float base[4], float surface[2])
 {
+    const Texture *textures = pass->scene->textures;
     float sample[4];
     for (int i = 0; i < 4; i++)
         base[i] = material->base_color[i];
     surface[0] = material->roughness;
     surface[1] = material->metallic;
     if (material->base_color_texture) {
-        texture_sample(&scene->textures[material->base_color_texture - 1], uv, sample);
+        texture_sample(&textures[material->base_color_texture - 1], uv, sample);
         for (int i = 0; i < 4; i++)
             base[i] = op_mul(base[i], sample[i]);
     }
-    if (material->metallic_roughness_texture) {
-        texture_sample(&scene->textures[material->metallic_roughness_texture - 1], uv, sample);
+    if (material->metallic_roughness_texture && needs_has(&pass->needs, NEED_MATERIAL_TEXTURE)) {
+        texture_sample(&textures[material->metallic_roughness_texture - 1], uv, sample);
         surface[0] = op_mul(surface[0], sample[1]);
         surface[1] = op_mul(surface[1], sample[2]);
     }
@@ -70,8 +71,43 @@ static inline bool fragment_masked(const Pass *pass, const Setup *setup, const P
     const Material *material = &pass->scene->materials[draw->material];
     float uv[2], base[4], surface[2];
     fragment_uv(pass, setup, material, fragment_inverse_w(pass, setup, x, y), x, y, uv);
-    fragment_material(pass->scene, material, uv, base, surface);
+    fragment_material(pass, material, uv, base, surface);
     return base[3] < op_flush(material->alpha_cutoff);
+}
+
+/* Its position in view space; 0 where nothing needs it. */
+static inline void fragment_position(const Pass *pass, const Setup *setup, float inverse_w, int x,
+                                     int y, float position[4])
+{
+    const Vertex *const *v = setup->corner;
+    memset(position, 0, 4 * sizeof *position);
+    if (!needs_has(&pass->needs, NEED_POSITION))
+        return;
+    for (int i = 0; i < 3; i++)
+        position[i] = fragment_varying(
+            pass, setup, (float[3]){v[0]->position[i], v[1]->position[i], v[2]->position[i]},
+            inverse_w, x, y);
+    position[3] = 1.0f;
+}
+
+/* Its normal, turned to the viewer where the request says so; 0 where nothing needs it. */
+static inline void fragment_normal(const Pass *pass, const Setup *setup, float inverse_w, int x,
+                                   int y, float normal[4])
+{
+    const Vertex *const *v = setup->corner;
+    memset(normal, 0, 4 * sizeof *normal);
+    if (!needs_has(&pass->needs, NEED_NORMAL))
+        return;
+    for (int i = 0; i < 3; i++)
+        normal[i] = fragment_varying(pass, setup,
+                                     (float[3]){v[0]->normal[i], v[1]->normal[i], v[2]->normal[i]},
+                                     inverse_w, x, y);
+    float scale = op_inversesqrt(op_max(op_dot3(normal, normal), SHADING_TINY));
+    bool turn = pass->desc->normals == NORMALS_FACED && !setup->front;
+    for (int i = 0; i < 3; i++) {
+        float n = op_mul(normal[i], scale);
+        normal[i] = turn ? op_neg(n) : n;
+    }
 }
 
 /* The surface it shows, unquantised, its normal not encoded. Flushing mode. */
@@ -80,28 +116,11 @@ static inline void fragment_surface(const Pass *pass, const Setup *setup,
 {
     const Draw *draw = &pass->view.draws[primitive->draw];
     const Material *material = &pass->scene->materials[draw->material];
-    const Vertex *const *v = setup->corner;
-    float inverse_w = fragment_inverse_w(pass, setup, x, y);
-    float normal[3], uv[2];
-    for (int i = 0; i < 3; i++) {
-        out->position[i] = fragment_varying(
-            pass, setup, (float[3]){v[0]->position[i], v[1]->position[i], v[2]->position[i]},
-            inverse_w, x, y);
-        normal[i] = fragment_varying(pass, setup,
-                                     (float[3]){v[0]->normal[i], v[1]->normal[i], v[2]->normal[i]},
-                                     inverse_w, x, y);
-    }
-    out->position[3] = 1.0f;
-
-    float scale = op_inversesqrt(op_max(op_dot3(normal, normal), SHADING_TINY));
-    bool turn = pass->desc->normals == NORMALS_FACED && !setup->front;
-    for (int i = 0; i < 3; i++) {
-        float n = op_mul(normal[i], scale);
-        out->normal[i] = turn ? op_neg(n) : n;
-    }
-    out->normal[3] = 0.0f;
+    float uv[2], inverse_w = fragment_inverse_w(pass, setup, x, y);
+    fragment_position(pass, setup, inverse_w, x, y, out->position);
+    fragment_normal(pass, setup, inverse_w, x, y, out->normal);
     fragment_uv(pass, setup, material, inverse_w, x, y, uv);
-    fragment_material(pass->scene, material, uv, out->diffuse, out->material);
+    fragment_material(pass, material, uv, out->diffuse, out->material);
     if (!draw->transparent)
         out->diffuse[3] = 1.0f;
     out->material[2] = material->occlusion;
@@ -111,7 +130,7 @@ static inline void fragment_surface(const Pass *pass, const Setup *setup,
 /* A surface as the targets take it, in place. */
 static inline void fragment_encode(const Pass *pass, Texel *texel)
 {
-    if (pass->layout.normal == FORMAT_RG16)
+    if (pass->layout.normal == FORMAT_RG16 && needs_has(&pass->needs, NEED_NORMAL))
         encode_octahedral(texel->normal, texel->normal);
 }
 
@@ -127,9 +146,9 @@ static inline void fragment_shade(const Pass *pass, const Setup *setup, const Pr
  * place. depth: the stored depth (depth_key). Flushing mode. */
 static inline void fragment_decode(const Pass *pass, uint32_t depth, int x, int y, Texel *texel)
 {
-    if (pass->layout.normal == FORMAT_RG16)
+    if (pass->layout.normal == FORMAT_RG16 && needs_has(&pass->needs, NEED_NORMAL))
         decode_octahedral(texel->normal, texel->normal);
-    if (pass->layout.position == FORMAT_NONE)
+    if (pass->layout.position == FORMAT_NONE && needs_has(&pass->needs, NEED_POSITION))
         decode_position(&pass->view.unprojection, depth_fetch(pass->depth_format, depth), x, y,
                         texel->position);
 }

@@ -125,7 +125,7 @@ static Result reserve_geometry(Pass *pass)
     return pass_reserve(pass, bytes);
 }
 
-Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
+Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass *out)
 {
     *out = (Pass){
         .desc = desc,
@@ -139,6 +139,9 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
     Result result = view_build(scene, desc, &out->view);
     if (result != RESULT_OK)
         return result;
+    needs_derive(scene, &out->view, desc, traced, &out->needs);
+    for (int i = 0; i < 2; i++)
+        out->stored[i] = needs_layout(&out->needs, desc, i == 1);
     out->tile = desc->tile ? desc->tile : TILE_DEFAULT;
     uint32_t tile = (uint32_t)out->tile;
     out->tile_columns = ((uint32_t)desc->width + tile - 1) / tile;

@@ -4,6 +4,7 @@
 
 #include "base/pool.h"
 #include "frame/frame.h"
+#include "frame/needs.h"
 #include "frame/shading.h"
 #include "frame/view.h"
 #include "ref/pipeline/buffers.h"
@@ -30,10 +31,13 @@ typedef struct Pass {
     uint64_t bytes, limit; /* reserved so far; the caller's --max-memory */
     bool fused, reversed;
     PixelFormat depth_format;
-    GBufferLayout layout;
+    GBufferLayout layout; /* of what fragments are rounded to */
+    Needs needs;
+    GBufferLayout stored[2]; /* of the opaque and the transparent list's buffers: what is needed */
 } Pass;
 
-Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out);
+/* traced: see needs_derive. */
+Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass *out);
 void pass_free(Pass *pass);
 
 /* Accounts for bytes about to be allocated; NO_MEMORY and a message past the limit. */
@@ -99,6 +103,20 @@ static inline bool pass_peeled(const Pass *pass, FragmentDepth depth, uint32_t p
         return pass->reversed ? z >= fetched : z <= fetched;
     }
     return pass->reversed ? depth.key >= previous : depth.key <= previous;
+}
+
+/* Whether a stored depth is behind that of the previous layer, by more than the bias: what peeling
+ * by depth and primitive asks. */
+static inline bool pass_behind(const Pass *pass, uint32_t key, uint32_t previous)
+{
+    if (pass->reversed ? key >= previous : key <= previous)
+        return false;
+    float bias = pass->desc->bias;
+    if (!(bias > 0.0f))
+        return true;
+    float z = depth_fetch(pass->depth_format, key);
+    float fetched = depth_fetch(pass->depth_format, previous);
+    return pass->reversed ? z < op_sub(fetched, bias) : z > op_add(fetched, bias);
 }
 
 /* Whether further peels would have come to it: behind the previous layer, and not discarded with

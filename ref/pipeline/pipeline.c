@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "ref/pipeline/methods/methods.h"
-#include "ref/pipeline/pass.h"
+#include "ref/pipeline/stage.h"
 #include "ref/pipeline/tile.h"
 
 #include <stdio.h>
@@ -27,9 +27,10 @@ static const struct {
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
 {
     Pass pass;
-    Result result = pass_create(scene, desc, &pass);
+    Result result = pass_create(scene, desc, trace != NULL, &pass);
     if (result != RESULT_OK)
         return result;
+    bool opaque_only = !needs_has(&pass.needs, NEED_TRANSPARENT);
     bool definition = trace || desc->ref_path == REF_PATH_DEFINITION || !methods[desc->method].tile;
     out->threads = pool_threads(pass.pool);
     out->fused = pass.fused;
@@ -40,8 +41,9 @@ static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trac
     if (result == RESULT_OK)
         result = image_create(desc->width, desc->height, FORMAT_RGBA8, &out->display);
     if (result == RESULT_OK)
-        result = definition ? methods[desc->method].definition(&pass, trace, out)
-                            : methods[desc->method].tile(&pass, out);
+        result = !definition   ? methods[desc->method].tile(&pass, out)
+                 : opaque_only ? stage_opaque_only(&pass, out)
+                               : methods[desc->method].definition(&pass, trace, out);
     out->buffer_bytes = pass.bytes;
     pass_free(&pass);
     return result;

@@ -358,11 +358,13 @@ static inline void shade_batch_skipping(const View *view, const ShadeForm *form,
         shade_phong(batch);
         return;
     }
-    Surface surface;
-    shade_surface(batch, &surface);
     Lanes sum[3] = {lanes_all(0.0f), lanes_all(0.0f), lanes_all(0.0f)};
-    skip = skip && shade_may_skip(view, form, batch, &surface);
-    shade_lights(view, form, &surface, skip, sum);
+    if (view->light_count > 0) {
+        Surface surface;
+        shade_surface(batch, &surface);
+        skip = skip && shade_may_skip(view, form, batch, &surface);
+        shade_lights(view, form, &surface, skip, sum);
+    }
     Lanes alpha = lanes_load(batch->diffuse[3]);
     for (int i = 0; i < 3; i++) {
         Lanes ambient =

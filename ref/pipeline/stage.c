@@ -95,12 +95,16 @@ static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
     bool edges = render_desc_edges(pass->desc);
     ShadeForm form = pass_shade_form(pass, transparent);
     PixelRect rect = pass_tile_rect(pass, tile);
+    float material[4]; /* where it is not stored */
+    needs_material(&pass->needs, pass->desc, transparent, material);
     for (int y = rect.y0; y <= rect.y1; y++)
         for (int x = rect.x0; x <= rect.x1; x++) {
             int row = pass->view.height - 1 - y;
             Texel texel;
             float color[4];
             gbuffer_load(source, x, row, &texel);
+            if (source->material.format == FORMAT_NONE)
+                memcpy(texel.material, material, sizeof material);
             if (stage->forward) {
                 memcpy(color, texel.diffuse, sizeof color);
                 if (color[3] <= SHADING_ALPHA_TEST)
@@ -143,9 +147,11 @@ Result stage_light(Stage *stage, const GBuffer *source, bool transparent)
 static void resolve_pixel(Stage *stage, int x, int row)
 {
     const Pass *pass = stage->pass;
-    float accum[4], opaque[4];
+    const Image *diffuse = &stage->opaque.diffuse;
+    float accum[4], opaque[4] = {0};
     format_fetch(stage->accum.format, image_pixel(&stage->accum, x, row), accum);
-    format_fetch(stage->opaque.diffuse.format, image_pixel(&stage->opaque.diffuse, x, row), opaque);
+    if (diffuse->pixels)
+        format_fetch(diffuse->format, image_pixel(diffuse, x, row), opaque);
     float *final = image_pixel(&stage->frame->final, x, row);
     shade_final(&pass->view, accum, pass_background_weight(pass, accum[3], opaque[3]), final);
     shade_display(pass->fused, final, image_pixel(&stage->frame->display, x, row));
@@ -182,8 +188,24 @@ Result stage_resolve(Stage *stage)
 
 Result stage_finish(Stage *stage)
 {
-    Result result = stage_light(stage, &stage->opaque, false);
+    Result result = RESULT_OK;
+    if (needs_has(&stage->pass->needs, NEED_OPAQUE))
+        result = stage_light(stage, &stage->opaque, false);
     return result == RESULT_OK ? stage_resolve(stage) : result;
+}
+
+Result stage_opaque_only(Pass *pass, Frame *frame)
+{
+    Stage stage;
+    Result result = stage_create(pass, NULL, frame, NULL, 0, &stage);
+    if (result != RESULT_OK)
+        return result;
+    result = stage_opaque(&stage);
+    if (result == RESULT_OK)
+        result = stage_finish(&stage);
+    frame->geometry_passes = pass_geometry_passes(pass, 0);
+    stage_free(&stage);
+    return result;
 }
 
 /* ---- running and tracing ---- */
@@ -261,9 +283,9 @@ void stage_count_remaining(Stage *stage, uint32_t tile)
 
 /* ---- memory ---- */
 
-uint64_t stage_gbuffer_bytes(const Pass *pass)
+uint64_t stage_gbuffer_bytes(const Pass *pass, bool transparent)
 {
-    const GBufferLayout *layout = &pass->layout;
+    const GBufferLayout *layout = &pass->stored[transparent];
     uint64_t pixel = format_pixel_bytes(layout->normal) + format_pixel_bytes(layout->position) +
                      format_pixel_bytes(layout->diffuse) + format_pixel_bytes(layout->material) +
                      format_pixel_bytes(pass->depth_format) + format_pixel_bytes(FORMAT_R32UI);
@@ -282,7 +304,7 @@ static Result allocate(Stage *stage)
     const Pass *pass = stage->pass;
     const RenderDesc *desc = pass->desc;
     size_t pixels = (size_t)desc->width * (size_t)desc->height;
-    Result result = gbuffer_create(desc, &stage->opaque);
+    Result result = gbuffer_create(desc, &pass->stored[0], &stage->opaque);
     if (result == RESULT_OK)
         result = image_create(desc->width, desc->height, desc->accum, &stage->accum);
     if (result != RESULT_OK)
@@ -301,7 +323,7 @@ Result stage_create(Pass *pass, TraceSink *trace, Frame *frame, void *method, ui
                     Stage *out)
 {
     uint64_t pixels = (uint64_t)pass->view.width * (uint64_t)pass->view.height;
-    uint64_t own = stage_gbuffer_bytes(pass) +
+    uint64_t own = stage_gbuffer_bytes(pass, false) +
                    pixels * (format_pixel_bytes(pass->desc->accum) + 3 * sizeof(uint32_t));
     *out = (Stage){.pass = pass,
                    .trace = trace,

@@ -38,8 +38,8 @@ Result stage_create(Pass *pass, TraceSink *trace, Frame *frame, void *method, ui
                     Stage *out);
 void stage_free(Stage *stage);
 
-/* Of a G-buffer with its depth and primitive ids, for the sum given to stage_create. */
-uint64_t stage_gbuffer_bytes(const Pass *pass);
+/* Of a list's G-buffer with its depth and primitive ids, for the sum given to stage_create. */
+uint64_t stage_gbuffer_bytes(const Pass *pass, bool transparent);
 
 /* Runs one pass: function for every tile, on all threads, in flushing mode. */
 Result stage_run(Stage *stage, StageTile function);
@@ -53,6 +53,9 @@ Result stage_light(Stage *stage, const GBuffer *source, bool transparent);
 Result stage_finish(Stage *stage);
 /* The last two thirds of it, where the opaque colour is blended already. */
 Result stage_resolve(Stage *stage);
+
+/* A whole frame of a scene without transparent surfaces, by any method: all that it has to do. */
+Result stage_opaque_only(Pass *pass, Frame *frame);
 
 /* Traces one buffer under "opaque.<what>" (peel −1) or "peel.K.<what>", or a whole G-buffer. */
 Result stage_put(const Stage *stage, int peel, const char *what, const Image *image);

@@ -99,8 +99,7 @@ static Result run(Stage *stage)
 
 Result sums_render(Pass *pass, TraceSink *trace, Frame *frame, const SumsMethod *method)
 {
-    bool wide = pass->desc->accum == FORMAT_RGBA32F;
-    Sums sums = {method, .sum = {.format = wide ? FORMAT_RGBA32F : FORMAT_RGBA16F}};
+    Sums sums = {method, .sum = {.format = render_desc_sum_format(pass->desc)}};
     uint64_t pixel_bytes = format_pixel_bytes(sums.sum.format) +
                            (*method->second ? format_pixel_bytes(FORMAT_R32F) : 0);
     Stage stage;

@@ -45,7 +45,7 @@ typedef struct TileLight {
     uint64_t tag; /* of this list in this tile, in the upper half */
     unsigned char *accum;
     PassCounts *counts;
-    int varyings;
+    int first_varying, varyings; /* those between are needed: without lights, only uv */
     bool transparent, seed_blend;
     bool exact; /* the G-buffer keeps every bit and the position */
     ShadeForm form;
@@ -104,8 +104,8 @@ TILE_INLINE Lanes varying_plane(const TileGrid *grid, const TrianglePlanes *plan
     return block_plane(grid, &plane, x, y);
 }
 
-TILE_INLINE void block_varyings(TileLight *light, int varyings, LanesInt index, uint32_t bits,
-                                Lanes x, Lanes y, BlockVaryings *out)
+TILE_INLINE void block_varyings(TileLight *light, int first_varying, int varyings, LanesInt index,
+                                uint32_t bits, Lanes x, Lanes y, BlockVaryings *out)
 {
     int32_t name[LANES];
     lanes_int_store(name, index);
@@ -118,7 +118,7 @@ TILE_INLINE void block_varyings(TileLight *light, int varyings, LanesInt index, 
         out->inverse_w = first ? w : lanes_select(its, w, out->inverse_w);
         LanesInt surface = lanes_int_all(planes->surface);
         out->surface = first ? surface : lanes_int_select(its, surface, out->surface);
-        for (int i = 0; i < varyings; i++) {
+        for (int i = first_varying; i < varyings; i++) {
             Lanes value = varying_plane(light->grid, planes, i, x, y);
             out->varying[i] = first ? value : lanes_select(its, value, out->varying[i]);
         }
@@ -135,7 +135,7 @@ static inline void lane_material(const Pass *pass, const Draw *draw, const float
 {
     const Material *material = &pass->scene->materials[draw->material];
     float base[4], surface[2];
-    fragment_material(pass->scene, material, uv, base, surface);
+    fragment_material(pass, material, uv, base, surface);
     if (!draw->transparent)
         base[3] = 1.0f;
     for (int i = 0; i < 4; i++)
@@ -145,7 +145,7 @@ static inline void lane_material(const Pass *pass, const Draw *draw, const float
     batch->material[2][lane] = material->occlusion;
 }
 
-static inline bool textured(const Material *material)
+static inline bool has_texture(const Material *material)
 {
     return material->base_color_texture || material->metallic_roughness_texture;
 }
@@ -162,7 +162,7 @@ static inline void batch_materials(const TileLight *light, const Lanes uv[2], La
     LanesMask same =
         lanes_int_equal(lanes_int_and(surface, even), lanes_int_and(lanes_int_all(name[0]), even));
     if (lanes_mask_bits(same) == LANES_FULL &&
-        !textured(&pass->scene->materials[first->material])) {
+        !has_texture(&pass->scene->materials[first->material])) {
         lane_material(pass, first, (const float[2]){0, 0}, 0, batch);
         for (int i = 0; i < 4; i++)
             lanes_store(batch->diffuse[i], lanes_all(batch->diffuse[i][0]));
@@ -210,18 +210,23 @@ static inline void batch_surfaces(const TileLight *light, const Gathered *gather
                                   ShadeBatch *batch)
 {
     Lanes w = lanes_div(lanes_all(1.0f), lanes_load(gathered->inverse_w)), normal[3], uv[2];
-    for (int i = 0; i < 3; i++) {
-        lanes_store(batch->position[i], lanes_mul(lanes_load(gathered->varying[i]), w));
-        normal[i] = lanes_mul(lanes_load(gathered->varying[3 + i]), w);
-    }
-    for (int i = 0; i < 2; i++)
-        uv[i] = light->varyings == VARYINGS ? lanes_mul(lanes_load(gathered->varying[6 + i]), w)
-                                            : lanes_all(0.0f);
     LanesInt surface = lanes_int_load(gathered->surface);
     LanesMask turned = lanes_int_equal(lanes_int_and(surface, lanes_int_all(1)), lanes_int_all(1));
+    for (int i = 0; i < 3; i++) {
+        Lanes position = lanes_all(0.0f);
+        normal[i] = position;
+        if (light->first_varying == 0) {
+            position = lanes_mul(lanes_load(gathered->varying[i]), w);
+            normal[i] = lanes_mul(lanes_load(gathered->varying[3 + i]), w);
+        }
+        lanes_store(batch->position[i], position);
+    }
     shade_normalize(normal, normal);
     for (int i = 0; i < 3; i++)
         lanes_store(batch->normal[i], lanes_select(turned, LANES_NEG(normal[i]), normal[i]));
+    for (int i = 0; i < 2; i++)
+        uv[i] = light->varyings == VARYINGS ? lanes_mul(lanes_load(gathered->varying[6 + i]), w)
+                                            : lanes_all(0.0f);
     batch_materials(light, uv, surface, batch);
     if (!light->exact)
         for (int lane = 0; lane < LANES; lane++)
@@ -291,7 +296,7 @@ static __attribute__((noinline)) void light_batch(TileLight *light, Gathered *ga
     for (int lane = gathered->count; lane < LANES; lane++) {
         /* Unused lanes are copies of the first, so that they are as harmless. */
         gathered->inverse_w[lane] = gathered->inverse_w[0];
-        for (int i = 0; i < light->varyings; i++)
+        for (int i = light->first_varying; i < light->varyings; i++)
             gathered->varying[i][lane] = gathered->varying[i][0];
         gathered->surface[lane] = gathered->surface[0];
         gathered->pixel[lane] = gathered->pixel[0];
@@ -310,11 +315,11 @@ static __attribute__((noinline)) void light_batch(TileLight *light, Gathered *ga
 }
 
 /* Moves what is behind the first LANES fragments to the front. */
-static inline void advance(Gathered *gathered, int varyings)
+static inline void advance(Gathered *gathered, int first_varying, int varyings)
 {
     gathered->count -= LANES;
     lanes_store(gathered->inverse_w, lanes_load(gathered->inverse_w + LANES));
-    for (int i = 0; i < varyings; i++)
+    for (int i = first_varying; i < varyings; i++)
         lanes_store(gathered->varying[i], lanes_load(gathered->varying[i] + LANES));
     lanes_int_store(gathered->surface, lanes_int_load(gathered->surface + LANES));
     lanes_int_store(gathered->pixel, lanes_int_load(gathered->pixel + LANES));
@@ -322,17 +327,17 @@ static inline void advance(Gathered *gathered, int varyings)
 }
 
 /* bits: lanes that have a fragment, of the triangle in index, at the depth in key. */
-TILE_INLINE void gather_block(TileLight *light, int varyings, int block, uint32_t bits,
-                              LanesInt index, LanesInt key)
+TILE_INLINE void gather_block(TileLight *light, int first_varying, int varyings, int block,
+                              uint32_t bits, LanesInt index, LanesInt key)
 {
     BlockVaryings values;
-    block_varyings(light, varyings, index, bits, block_x(grid_x(light->grid, block)),
+    block_varyings(light, first_varying, varyings, index, bits, block_x(grid_x(light->grid, block)),
                    block_y(grid_y(light->grid, block)), &values);
     bool full = bits == LANES_FULL;
     Gathered *gathered = full ? &light->whole : &light->parts;
     int at = full ? 0 : gathered->count;
     lanes_pack(gathered->inverse_w + at, bits, values.inverse_w);
-    for (int i = 0; i < varyings; i++)
+    for (int i = first_varying; i < varyings; i++)
         lanes_pack(gathered->varying[i] + at, bits, values.varying[i]);
     lanes_int_pack(gathered->surface + at, bits, values.surface);
     lanes_int_pack(gathered->pixel + at, bits,
@@ -343,16 +348,18 @@ TILE_INLINE void gather_block(TileLight *light, int varyings, int block, uint32_
         return;
     light_batch(light, gathered, full);
     if (!full)
-        advance(gathered, varyings);
+        advance(gathered, first_varying, varyings);
 }
 
 static void tile_light_block(TileLight *light, int block, uint32_t bits, LanesInt index,
                              LanesInt key)
 {
-    if (light->varyings == VARYINGS)
-        gather_block(light, VARYINGS, block, bits, index, key);
+    if (light->first_varying > 0)
+        gather_block(light, VARYINGS - 2, VARYINGS, block, bits, index, key);
+    else if (light->varyings == VARYINGS)
+        gather_block(light, 0, VARYINGS, block, bits, index, key);
     else
-        gather_block(light, VARYINGS - 2, block, bits, index, key);
+        gather_block(light, 0, VARYINGS - 2, block, bits, index, key);
 }
 
 /* Lights what is left of a layer: the next one must find it blended. */
@@ -361,14 +368,6 @@ static void tile_light_flush(TileLight *light)
     if (light->parts.count > 0)
         light_batch(light, &light->parts, false);
     light->parts.count = 0;
-}
-
-static inline bool any_texture(const Pass *pass)
-{
-    for (size_t i = 0; i < pass->view.draw_count; i++)
-        if (textured(&pass->scene->materials[pass->view.draws[i].material]))
-            return true;
-    return false;
 }
 
 /* grid, triangles, cache, tag and accum are the tile's. */
@@ -381,7 +380,11 @@ static inline void tile_light_begin(const Pass *pass, bool transparent, TileLigh
     out->seed_blend = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
     out->exact = layout->normal == FORMAT_RGBA32F && layout->position == FORMAT_RGBA32F &&
                  layout->diffuse == FORMAT_RGBA32F && layout->material == FORMAT_RGBA32F;
-    out->varyings = any_texture(pass) ? VARYINGS : VARYINGS - 2;
+    bool unlit = !needs_has(&pass->needs, NEED_NORMAL) && !needs_has(&pass->needs, NEED_POSITION);
+    bool textured = needs_has(&pass->needs, NEED_BASE_COLOR_TEXTURE) ||
+                    needs_has(&pass->needs, NEED_MATERIAL_TEXTURE);
+    out->first_varying = unlit ? VARYINGS - 2 : 0;
+    out->varyings = unlit || textured ? VARYINGS : VARYINGS - 2;
     out->form = pass_shade_form(pass, transparent);
     out->parts.count = 0;
 }

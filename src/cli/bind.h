@@ -21,6 +21,7 @@ int cmd_driver(int argc, char **argv);
 int cmd_flatten(int argc, char **argv);
 int cmd_hard(int argc, char **argv);
 int cmd_methods(int argc, char **argv);
+int cmd_plan(int argc, char **argv);
 int cmd_scenes(int argc, char **argv);
 
 #endif

@@ -24,6 +24,7 @@ static const Command commands[] = {
     {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
     {"hard", "the hard cases, each against its own expectation", cmd_hard},
     {"methods", "list the methods of --method", cmd_methods},
+    {"plan", "what a scene needs, and the cheapest settings that reach an error", cmd_plan},
     {"scenes", "list the built-in scenes, or write one as glTF", cmd_scenes},
 };
 

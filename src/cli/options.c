@@ -117,6 +117,31 @@ bool options_has_extension(const char *path, const char *extension)
     return length > wanted && strcmp(path + length - wanted, extension) == 0;
 }
 
+char *options_command_line(int argc, char **argv)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fprintf(out, "%s%s", *argv[0] ? "build/" : "", argv[0]);
+    for (int i = 1; i < argc; i++) {
+        bool plain = argv[i][0] != '\0';
+        for (const char *c = argv[i]; *c; c++)
+            plain &= isalnum((unsigned char)*c) || strchr("_-./=,:+%@", *c) != NULL;
+        if (plain) {
+            fprintf(out, " %s", argv[i]);
+            continue;
+        }
+        fputs(" '", out);
+        for (const char *c = argv[i]; *c; c++)
+            *c == '\'' ? (void)fputs("'\\''", out) : (void)fputc(*c, out);
+        fputc('\'', out);
+    }
+    fclose(out);
+    return text;
+}
+
 RenderOptions options_default(void)
 {
     return (RenderOptions){
@@ -138,6 +163,7 @@ RenderOptions options_default(void)
         .weight = -1,
         .post = -1,
         .simd = -1,
+        .model_all = -1,
     };
 }
 
@@ -201,6 +227,7 @@ static Result apply_names(RenderOptions *options)
     APPLY(weight, WeightEquation);
     APPLY(post, PostEffect);
     APPLY(simd, SimdChoice);
+    APPLY(model_all, bool);
     if (options->depth >= 0)
         desc->depth = depths[options->depth];
     if (options->accum >= 0)
@@ -280,29 +307,4 @@ Result options_open_directory(const char *path)
         result =
             result_fail(RESULT_IO, "%s: cannot write to this directory: %s", path, strerror(errno));
     return result;
-}
-
-char *options_command_line(int argc, char **argv)
-{
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        return NULL;
-    fprintf(out, "build/%s", argv[0]);
-    for (int i = 1; i < argc; i++) {
-        bool plain = argv[i][0] != '\0';
-        for (const char *c = argv[i]; *c; c++)
-            plain &= isalnum((unsigned char)*c) || strchr("_-./=,:+%@", *c) != NULL;
-        if (plain) {
-            fprintf(out, " %s", argv[i]);
-            continue;
-        }
-        fputs(" '", out);
-        for (const char *c = argv[i]; *c; c++)
-            *c == '\'' ? (void)fputs("'\\''", out) : (void)fputc(*c, out);
-        fputc('\'', out);
-    }
-    fclose(out);
-    return text;
 }

@@ -25,13 +25,14 @@ typedef struct RenderOptions {
     RenderDesc desc;
     const char *camera; /* name or index; NULL: the first */
     bool has_opacity, has_background;
-    bool all_methods; /* --method all, of commands that take it */
+    bool all_methods;            /* --method all, of commands that take it */
+    bool has_method, has_passes; /* one was given */
     double opacity, background[3];
     FmaChoice fma;
     /* −1: as the profile or the default has it; else the index of the name that was given, which
      * is the value in RenderDesc but for the formats. */
     int profile, cull, normals, shading, ggx, back_light, depth_func, depth_range, peel_test,
-        gbuffer, position, depth, accum, sort, weight, post, simd;
+        gbuffer, position, depth, accum, sort, weight, post, simd, model_all;
 } RenderOptions;
 
 /* Child parsers; their input is a RenderOptions. The first takes SCENE as its argument; the other
@@ -95,7 +96,8 @@ Result options_check_output(const char *path);
 /* Makes a directory, and finds it writable, before minutes of work and not after. */
 Result options_open_directory(const char *path);
 
-/* The command as a shell would take it again; NULL when memory is exhausted. The caller frees. */
+/* The command as a shell would take it again: argv[0] is "peel <command>", or empty to have the
+ * arguments alone, each behind a space; NULL when memory is exhausted. The caller frees. */
 char *options_command_line(int argc, char **argv);
 
 /* Prints "peel: <message>" and returns EXIT_BAD_INPUT. */

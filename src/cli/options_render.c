@@ -101,6 +101,7 @@ enum {
     KEY_GL,
     KEY_SIMD,
     KEY_TILE,
+    KEY_MODEL,
     KEY_THREADS,
     KEY_MEMORY,
 };
@@ -170,6 +171,9 @@ static const struct argp_option settings[] = {
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
     {"tile", KEY_TILE, "N", 0,
      "Pixels a side of ref's tiles: a power of two, 8 to 256 (default 64); same bits", 1},
+    {"model", KEY_MODEL, "WHAT", 0,
+     "needed (default): leave out what this scene does not need, see peel plan; or all; same bits",
+     1},
     {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
     {0},
 };
@@ -251,7 +255,10 @@ error_t options_gl(const char *text)
 static error_t parse_method(const char *text, RenderOptions *options)
 {
     options->all_methods = strcmp(text, "all") == 0;
-    return options->all_methods ? 0 : options_method(text, &options->desc);
+    if (options->all_methods)
+        return 0;
+    options->has_method = true;
+    return options_method(text, &options->desc);
 }
 
 error_t options_method(const char *text, RenderDesc *desc)
@@ -309,6 +316,7 @@ static const NamedOption named_options[] = {
     NAMED(KEY_WEIGHT, "--weight", weight, "9", "7", "8", "10"),
     NAMED(KEY_POST, "--post", post, "none", "edges"),
     NAMED(KEY_SIMD, "--simd", simd, "auto", "scalar", "sse2", "avx2", "avx512"),
+    NAMED(KEY_MODEL, "--model", model_all, "needed", "all"),
 };
 
 static error_t parse_named(int key, const char *argument, RenderOptions *options)

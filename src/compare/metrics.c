@@ -138,6 +138,25 @@ static double percentile(float *values, size_t count, size_t thousandths)
     return count ? (double)select_rank(values, count, (count * thousandths + 999) / 1000 - 1) : 0.0;
 }
 
+Result metrics_p99(const Image *a, const Image *b, double *out)
+{
+    size_t pixels = (size_t)a->width * (size_t)a->height;
+    float *worst = memory_array(pixels, sizeof *worst);
+    *out = 0.0;
+    if (!worst)
+        return RESULT_NO_MEMORY;
+    const float *pa = a->pixels, *pb = b->pixels;
+    for (size_t i = 0; i < pixels; i++, pa += 4, pb += 4) {
+        bool finite = is_finite4(pa) && is_finite4(pb);
+        worst[i] = finite ? 0.0f : INFINITY;
+        for (int c = 0; c < 4 && finite; c++)
+            worst[i] = fmaxf(worst[i], fabsf(pa[c] - pb[c]));
+    }
+    *out = percentile(worst, pixels, 990);
+    free(worst);
+    return RESULT_OK;
+}
+
 Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
                           UnaffectedMetrics *out)
 {

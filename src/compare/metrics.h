@@ -65,6 +65,10 @@ void metrics_buffer(BufferMetrics *metrics, PixelFormat format, int x, int y, in
 /* a and b: FORMAT_RGBA32F of one size. */
 void metrics_final(const Image *a, const Image *b, FinalMetrics *out);
 
+/* 99th percentile (nearest rank) over all pixels of a pixel's greatest absolute difference; where
+ * either is not finite that is infinite. a and b as above. NO_MEMORY on failure. */
+Result metrics_p99(const Image *a, const Image *b, double *out);
+
 /* same: width·height bytes, a StructureSame each. NO_MEMORY on failure. */
 Result metrics_unaffected(const Image *a, const Image *b, const uint8_t *same,
                           UnaffectedMetrics *out);

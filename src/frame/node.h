@@ -22,6 +22,11 @@ enum {
     NODE_WORDS_TEXTURED
 };
 #define NODE_NONE UINT32_MAX
+/* gl's lists: room before the nodes are counted, a pixel; words before the pixels' heads. */
+enum {
+    NODES_GUESSED = 4,
+    NODES_HEADER_WORDS = 4
+};
 
 /* Words of a node of this scene. */
 static inline uint32_t node_words(const Scene *scene)

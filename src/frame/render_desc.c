@@ -38,6 +38,32 @@ const char *gbuffer_name(GBufferFormat format)
     return names[format];
 }
 
+bool render_desc_needs_code(const RenderDesc *desc)
+{
+    return render_desc_depth(desc) == FORMAT_D24 && desc->peel_test == PEEL_TEST_STORED;
+}
+
+bool render_desc_needs_previous_code(const RenderDesc *desc)
+{
+    if (desc->depth_range != DEPTH_RANGE_REVERSED)
+        return false;
+    if (desc->method == METHOD_PEEL_ID)
+        return render_desc_depth(desc) == FORMAT_D24;
+    return render_desc_needs_code(desc) && !(desc->bias > 0.0f);
+}
+
+PixelFormat render_desc_dual_format(const RenderDesc *desc, bool normal)
+{
+    if (desc->gbuffer == GBUFFER_FULL)
+        return FORMAT_RGBA32F;
+    return normal ? FORMAT_RGBA16 : FORMAT_RGBA8;
+}
+
+PixelFormat render_desc_sum_format(const RenderDesc *desc)
+{
+    return desc->accum == FORMAT_RGBA32F ? FORMAT_RGBA32F : FORMAT_RGBA16F;
+}
+
 GBufferLayout render_desc_layout(const RenderDesc *desc)
 {
     static const GBufferLayout layouts[] = {

@@ -162,6 +162,7 @@ typedef struct RenderDesc {
     int nodes_per_pixel;   /* of METHOD_LINKED_LIST: room on average; 0: as many as are needed */
     PostEffect post;       /* of METHOD_LINKED_LIST */
     bool unfused;          /* model a driver without fused multiply-add */
+    bool model_all;        /* leave nothing out that changes no bit (frame/needs.h) */
     RefPath ref_path;
     SimdChoice simd;
     bool bound;        /* truth: fill Frame.bound */
@@ -201,6 +202,18 @@ const char *gbuffer_name(GBufferFormat format); /* "full", "seed", "compact"; st
 
 /* METHOD_LINKED_LIST has a compact one, whatever is asked for. */
 GBufferLayout render_desc_layout(const RenderDesc *desc);
+
+/* Only a 24-bit depth compared as stored is ambiguous when a texture fetch makes a float of it: the
+ * two greatest are both 1. The opaque depth can be either of them, a previous peel's only where the
+ * near plane is at 1. Then gl needs a R32UI copy of the integers. A bias is added to floats, but
+ * METHOD_PEEL_ID compares integers as well. */
+bool render_desc_needs_code(const RenderDesc *desc);
+bool render_desc_needs_previous_code(const RenderDesc *desc);
+
+/* METHOD_DUAL's targets: normals with opacity, or one of the two others. */
+PixelFormat render_desc_dual_format(const RenderDesc *desc, bool normal);
+/* Of the sums that METHOD_WEIGHTED_… blend. */
+PixelFormat render_desc_sum_format(const RenderDesc *desc);
 
 /* Sets every choice of the original program: G-buffer, 24-bit depth, 16-bit accumulation, LEQUAL,
  * raw peel test, its culling, normals, distribution, back light and opaque blend. */

@@ -108,6 +108,13 @@ static double light_reach(const ViewLight *light)
     return bounded ? 1.000001 * length + 1e-6 : INFINITY;
 }
 
+/* All factors of its colour are finite: a black light adds +0 or −0 to a sum that starts at +0. */
+static bool can_light(const Light *light, const RenderDesc *desc)
+{
+    return desc->shading != SHADING_PHONG &&
+           (light->color[0] != 0.0f || light->color[1] != 0.0f || light->color[2] != 0.0f);
+}
+
 static Result check(const Scene *scene, const RenderDesc *desc)
 {
     if (desc->width < 1 || desc->height < 1 || desc->width > SIZE_MAX_PIXELS ||
@@ -195,19 +202,23 @@ static void add_lights(const Scene *scene, const RenderDesc *desc, const Matrix 
     double degrees = fmod(scene->light_degrees_per_second * desc->time, 360.0);
     Matrix turn = matrix_rotate_y(degrees * (3.14159265358979323846 / 180.0));
     Matrix world_to_view = matrix_multiply(view, &turn);
-    out->light_count = scene->light_count;
+    size_t asked = scene->light_count;
     if (desc->lights < 0)
-        out->light_count = 0;
+        asked = 0;
     else if (desc->lights > 0 && (size_t)desc->lights < scene->light_count)
-        out->light_count = (size_t)desc->lights;
+        asked = (size_t)desc->lights;
     double reach = 0.0;
-    for (size_t i = 0; i < out->light_count; i++) {
-        out->lights[i] = make_light(&scene->lights[i], &world_to_view);
-        out->ranged = out->ranged || out->lights[i].inverse_range2 > 0.0f;
-        double distance = light_reach(&out->lights[i]);
+    for (size_t i = 0; i < asked; i++) {
+        if (!desc->model_all && !can_light(&scene->lights[i], desc))
+            continue;
+        ViewLight *light = &out->lights[out->light_count++];
+        *light = make_light(&scene->lights[i], &world_to_view);
+        out->ranged = out->ranged || light->inverse_range2 > 0.0f;
+        double distance = light_reach(light);
         reach = reach >= distance ? reach : distance; /* NaN stays */
     }
     out->light_reach = reach <= 0x1p47 ? (float)reach : 0.0f;
+    out->dark_light_count = asked - out->light_count;
 }
 
 static Matrix make_projection(const Camera *camera, const RenderDesc *desc)

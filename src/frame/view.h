@@ -41,8 +41,9 @@ typedef struct View {
     float projection[16];
     Unprojection unprojection;
     size_t draw_count;
-    Draw *draws; /* invisible instances (masked away, alpha < 1e-4) left out */
-    size_t light_count;
+    Draw *draws;             /* invisible instances (masked away, alpha < 1e-4) left out */
+    size_t light_count;      /* those that can light anything, or with desc->model_all all */
+    size_t dark_light_count; /* left out: black, or unused by Phong */
     ViewLight *lights;
     /* No light is further from the eye; 0 where that is not known, beyond 2^47, or a light is not
      * what scene_validate wants, so that shading it may overflow. */

@@ -3,6 +3,8 @@
 #include "base/file.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 json_t *document_real(double value)
 {
@@ -24,6 +26,20 @@ void document_append(Document *json, json_t *array, json_t *value)
 {
     if (json_array_append_new(array, value))
         json->failed = true;
+}
+
+json_t *document_string(const char *text)
+{
+    json_t *value = json_string(text);
+    if (value)
+        return value;
+    char *ascii = strdup(text);
+    for (char *c = ascii; c && *c; c++)
+        if ((unsigned char)*c > 126)
+            *c = '?';
+    value = ascii ? json_string(ascii) : NULL;
+    free(ascii);
+    return value;
 }
 
 static int write_text(const char *text, size_t size, void *writer)

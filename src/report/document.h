@@ -12,13 +12,15 @@ typedef struct Document {
     bool failed; /* a jansson call failed: memory is exhausted */
 } Document;
 
-/* A number, null where it is not finite; and a count. NULL when memory is exhausted. */
-json_t *document_real(double value);
-json_t *document_count(uint64_t value);
-
 /* Both take over value; NULL counts as a failure. */
 void document_put(Document *json, json_t *object, const char *key, json_t *value);
 void document_append(Document *json, json_t *array, json_t *value);
+
+/* Values; NULL when memory is exhausted. What is not a finite number is null. JSON is UTF-8; a path
+ * need not be: where it is not, its bytes beyond ASCII become '?'. */
+json_t *document_real(double value);
+json_t *document_count(uint64_t value);
+json_t *document_string(const char *text);
 
 /* Takes over root. Written to a temporary name and renamed; NO_MEMORY after a failure. */
 Result document_write(const Document *json, json_t *root, const char *path);

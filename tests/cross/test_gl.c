@@ -264,7 +264,7 @@ END_TEST
 START_TEST(test_memory_limit)
 {
     Scene scene = quad_scene(layered, 2);
-    RenderDesc desc = {.width = 1000, .height = 1000, .max_memory = 100 << 20};
+    RenderDesc desc = {.width = 1000, .height = 1000, .model_all = true, .max_memory = 100 << 20};
     Frame frame;
     ck_assert_msg(gl_render(&scene, &desc, NULL, &frame) == RESULT_NO_MEMORY, "%s",
                   result_message());

@@ -263,6 +263,7 @@ START_TEST(test_buffer_bytes)
         {gl_render, 68 + 4, {16 + 16 + 96, 16 + 16 + 48}},
     };
     RenderDesc desc = layers_desc(_i);
+    desc.model_all = true;
     layers_ladder(6, &layers);
     for (int i = 0; i < 2; i++) {
         uint64_t peel = buffer_bytes(rows[i].renderer, &layers.scene, desc, METHOD_PEEL);

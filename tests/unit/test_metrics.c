@@ -172,6 +172,29 @@ START_TEST(test_unaffected)
 }
 END_TEST
 
+/* Of 200 pixels that differ by 1/1024, 2/1024, … the 198th; what is not finite counts as most. */
+START_TEST(test_p99)
+{
+    enum {
+        PIXELS = 200
+    };
+    static float a[PIXELS][4], b[PIXELS][4];
+    double p99;
+    for (int p = 0; p < PIXELS; p++)
+        a[p][p % 4] = (float)((p * 77) % PIXELS + 1) * (p % 2 ? 0x1p-10f : -0x1p-10f);
+    Image image_a = image_of(PIXELS, 1, a[0]), image_b = image_of(PIXELS, 1, b[0]);
+    ck_assert_int_eq(metrics_p99(&image_a, &image_b, &p99), RESULT_OK);
+    ck_assert_double_eq(p99, 198 * 0x1p-10);
+    b[0][1] = NAN;
+    b[1][2] = INFINITY;
+    ck_assert_int_eq(metrics_p99(&image_a, &image_b, &p99), RESULT_OK);
+    ck_assert_double_eq(p99, 200 * 0x1p-10);
+    b[2][2] = NAN;
+    ck_assert_int_eq(metrics_p99(&image_a, &image_b, &p99), RESULT_OK);
+    ck_assert(isinf(p99));
+}
+END_TEST
+
 /* Neither many background pixels hide a few wrong fragments, nor the other way round. */
 START_TEST(test_background)
 {
@@ -247,6 +270,7 @@ int main(void)
     tcase_add_test(tcase, test_final_nothing_finite);
     tcase_add_test(tcase, test_percentile);
     tcase_add_test(tcase, test_unaffected);
+    tcase_add_test(tcase, test_p99);
     tcase_add_test(tcase, test_background);
     tcase_add_test(tcase, test_bound);
     suite_add_tcase(suite, tcase);

@@ -335,7 +335,7 @@ static Result make(const Pass *pass, Lists *out)
         return RESULT_NO_MEMORY;
     memset(out->heads, 0xff, pixels * sizeof *out->heads);
     Result result = node_materials(pass->scene, &pass->view, &out->materials, &out->material_count);
-    return result == RESULT_OK ? gbuffer_create(pass->desc, &out->layer) : result;
+    return result == RESULT_OK ? gbuffer_create(pass->desc, &pass->stored[1], &out->layer) : result;
 }
 
 Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame)
@@ -344,8 +344,8 @@ Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame)
     Stage stage;
     uint64_t heads_bytes =
         (uint64_t)pass->view.width * (uint64_t)pass->view.height * sizeof(uint32_t);
-    Result result =
-        stage_create(pass, trace, frame, &lists, stage_gbuffer_bytes(pass) + heads_bytes, &stage);
+    Result result = stage_create(pass, trace, frame, &lists,
+                                 stage_gbuffer_bytes(pass, true) + heads_bytes, &stage);
     if (result != RESULT_OK)
         return result;
     result = make(pass, &lists);

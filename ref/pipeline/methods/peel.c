@@ -121,11 +121,11 @@ Result peel_render(Pass *pass, TraceSink *trace, Frame *frame)
     Stage stage;
     uint64_t depth_bytes = (uint64_t)pass->view.width * (uint64_t)pass->view.height *
                            format_pixel_bytes(pass->depth_format);
-    Result result =
-        stage_create(pass, trace, frame, &peel, stage_gbuffer_bytes(pass) + depth_bytes, &stage);
+    Result result = stage_create(pass, trace, frame, &peel,
+                                 stage_gbuffer_bytes(pass, true) + depth_bytes, &stage);
     if (result != RESULT_OK)
         return result;
-    result = gbuffer_create(pass->desc, &peel.layer);
+    result = gbuffer_create(pass->desc, &pass->stored[1], &peel.layer);
     if (result == RESULT_OK)
         result = image_create(pass->view.width, pass->view.height, pass->depth_format,
                               &peel.previous_depth);

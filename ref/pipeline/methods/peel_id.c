@@ -42,14 +42,7 @@ static inline bool comes_after(const Pass *pass, uint32_t key, uint32_t id, uint
         return false; /* it was empty */
     if (key == previous)
         return id_before(pass, previous_id, id);
-    if (pass->reversed ? key > previous : key < previous)
-        return false;
-    float bias = pass->desc->bias;
-    if (!(bias > 0.0f))
-        return true;
-    float z = depth_fetch(pass->depth_format, key);
-    float fetched = depth_fetch(pass->depth_format, previous);
-    return pass->reversed ? z < op_sub(fetched, bias) : z > op_add(fetched, bias);
+    return pass_behind(pass, key, previous);
 }
 
 static inline uint32_t previous_id(const PeelId *state, size_t pixel)
@@ -179,7 +172,7 @@ static Result peels(Stage *stage)
 static Result make(const Pass *pass, PeelId *out)
 {
     int width = pass->view.width, height = pass->view.height;
-    Result result = gbuffer_create(pass->desc, &out->layer);
+    Result result = gbuffer_create(pass->desc, &pass->stored[1], &out->layer);
     if (result == RESULT_OK)
         result = image_create(width, height, pass->depth_format, &out->previous_depth);
     if (result == RESULT_OK)
@@ -195,7 +188,7 @@ Result peel_id_render(Pass *pass, TraceSink *trace, Frame *frame)
         (uint64_t)pass->view.width * (uint64_t)pass->view.height *
         (format_pixel_bytes(pass->depth_format) + format_pixel_bytes(FORMAT_R32UI));
     Result result = stage_create(pass, trace, frame, &state,
-                                 stage_gbuffer_bytes(pass) + previous_bytes, &stage);
+                                 stage_gbuffer_bytes(pass, true) + previous_bytes, &stage);
     if (result != RESULT_OK)
         return result;
     result = make(pass, &state);
