@@ -359,17 +359,18 @@ void passes_draw_list(const Passes *passes, GLuint program, bool transparent)
             passes_draw_range(passes, program, &passes->view->draws[i], 0, UINT32_MAX);
 }
 
-void passes_begin_count(const Passes *passes)
+void passes_begin_count(const Passes *passes, const uint64_t *samples)
 {
-    gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
+    if (samples)
+        gl.BeginQuery(GL_SAMPLES_PASSED, passes->samples);
 }
 
 Result passes_end_count(const Passes *passes, const char *what, uint64_t *samples)
 {
     GLuint64 count = 0;
-    gl.EndQuery(GL_SAMPLES_PASSED);
     if (!samples)
         return RESULT_OK;
+    gl.EndQuery(GL_SAMPLES_PASSED);
     gl.GetQueryObjectui64v(passes->samples, GL_QUERY_RESULT, &count);
     *samples = count;
     return context_check(passes->context, what);
@@ -378,7 +379,7 @@ Result passes_end_count(const Passes *passes, const char *what, uint64_t *sample
 Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,
                            uint64_t *samples)
 {
-    passes_begin_count(passes);
+    passes_begin_count(passes, samples);
     gl.Enable(GL_DEPTH_TEST);
     passes_draw_list(passes, program, transparent);
     gl.Disable(GL_DEPTH_TEST);

@@ -66,8 +66,9 @@ void passes_draw_list(const Passes *passes, GLuint program, bool transparent);
 /* Makes func, mirrored where desc->depth_range is, the depth function: at first desc's own is. */
 void passes_depth_test(const RenderDesc *desc, DepthFunc func);
 /* Counting the fragments that passed, of what is drawn between the two. The end fails when that
- * has failed: `what` names it. With samples NULL it does not wait for the driver. */
-void passes_begin_count(const Passes *passes);
+ * has failed: `what` names it. With samples NULL neither counts, nor waits for the driver; a query
+ * whose result is not read would be added to the next one by llvmpipe. */
+void passes_begin_count(const Passes *passes, const uint64_t *samples);
 Result passes_end_count(const Passes *passes, const char *what, uint64_t *samples);
 /* As passes_draw_list, with the depth test on, counted. */
 Result passes_draw_counted(const Passes *passes, GLuint program, bool transparent,

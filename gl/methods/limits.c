@@ -124,7 +124,7 @@ static Result any_layer(const Limits *limits, int which, bool *any)
     const Passes *passes = limits->passes;
     uint64_t samples;
     gl.BindTextureUnit(0, limits->textures[which]);
-    passes_begin_count(passes);
+    passes_begin_count(passes, &samples);
     passes_fullscreen(passes, limits->count, limits->buffers[1 - which]);
     Result result = passes_end_count(passes, "count of pixels with layers", &samples);
     *any = samples > 0;

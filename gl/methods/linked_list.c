@@ -339,7 +339,7 @@ static Result draw_layer(Lists *state, uint64_t *samples)
     gl.ClearNamedFramebufferuiv(state->layer_buffer, GL_COLOR, passes->targets.color_count, none);
     gl.DepthFunc(GL_ALWAYS);
     gl.Enable(GL_DEPTH_TEST);
-    passes_begin_count(passes);
+    passes_begin_count(passes, samples);
     passes_fullscreen(passes, state->extract, state->layer_buffer);
     gl.Disable(GL_DEPTH_TEST);
     passes_depth_test(passes->desc, passes->desc->depth_func);

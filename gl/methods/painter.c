@@ -30,7 +30,7 @@ static Result paint(const Passes *passes, GLuint program, const Sort *sort, Fram
     passes_bind_opaque_depth(passes);
     gl.Enable(GL_BLEND);
     passes_blend_over();
-    passes_begin_count(passes);
+    passes_begin_count(passes, &samples);
     draw_runs(passes, program, sort);
     Result result = passes_end_count(passes, "painter", &samples);
     gl.Disable(GL_BLEND);

@@ -135,7 +135,7 @@ static Result draw_depth(PeelId *state, int peel, uint64_t *samples)
         return result;
     passes_clear_layer(passes, &state->layers[peel & 1]);
     passes_depth_test(passes->desc, DEPTH_LEQUAL);
-    passes_begin_count(passes);
+    passes_begin_count(passes, samples);
     draw_triangles(state, state->depth[peel > 0], state->depth_buffer[peel & 1]);
     return passes_end_count(passes, "depth pass", samples);
 }

@@ -199,8 +199,8 @@ START_TEST(test_reach)
                 {0x1.1p47, 1, 1, 0}, {NAN, 1, 1, 0},          {INFINITY, 1, 1, 0}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         float color = rows[i].color;
-        lights[0] = (Light){.position = {0, 12, 0}, .attenuation = {1, 0, 0}};
-        lights[1] = (Light){.position = {3, -4, 12}, .attenuation = {1, 0, 0}};
+        lights[0] = (Light){.position = {0, 12, 0}, .color = {1, 1, 1}, .attenuation = {1, 0, 0}};
+        lights[1] = (Light){.position = {3, -4, 12}, .color = {1, 1, 1}, .attenuation = {1, 0, 0}};
         lights[2] = (Light){.position = {rows[i].x, 0, 0},
                             .color = {1, 1, color},
                             .attenuation = {rows[i].constant, 0, 0}};
