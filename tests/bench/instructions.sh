@@ -37,7 +37,7 @@ while read -r scene size lights limit; do
     [ "$update" = --update ] && continue
     if [ $((counted * 100)) -gt $((limit * 125)) ]; then
         echo "FAIL $scene: $counted instructions, expected at most $((limit * 125 / 100)):"
-        echo "     make it faster, or record it: sh tests/bench/instructions.sh build/peel . --update"
+        echo "     make it faster, or record it with --update (see instructions.txt)"
         failed=1
     fi
 done <"$work/old"

@@ -58,8 +58,8 @@ done
 check 'no plot of what does not vary' test ! -e page/lights.svg
 
 # Formats, methods and a limit that needs queries.
-exits 0 'formats' "$peel" bench tutorial --size 48x27 --passes auto --lights 2 --threads 1 --runs 1 \
-    --formats default,seed,compact+rgba8+d16 --method peel,linked-list --json bench.json
+exits 0 'formats' "$peel" bench tutorial --size 48x27 --passes auto --lights 2 --threads 1 \
+    --runs 1 --formats default,seed,compact+rgba8+d16 --method peel,linked-list --json bench.json
 json 'formats' 'd.rows.length === 18 && new Set(d.rows.map(r => r.formats)).size === 3'
 json 'formats agree' 'd.summary.differing_rows === 0 && d.rows.every(r => r.passes === "auto")'
 exits 0 'without truth' "$peel" bench tutorial --size 16x9 --runs 2 --no-error --simd scalar \
@@ -94,8 +94,8 @@ refused 'report over a file' tutorial --report bench.json
 refused 'roofline of a scene' tutorial --roofline
 refused 'no memory' tutorial --size 64x36 --no-error --max-memory 4K
 mkdir empty
-exits 4 'no gnuplot' env PATH="$work/empty" "$peel" bench tutorial --size 16x9 --passes 1,2 --runs 1 \
-    --renderers ref --report page
+exits 4 'no gnuplot' env PATH="$work/empty" "$peel" bench tutorial --size 16x9 --passes 1,2 \
+    --runs 1 --renderers ref --report page
 check 'which package' grep -q 'gnuplot-nox' output
 
 echo "$passed passed, $failed failed"
