@@ -55,6 +55,9 @@ typedef struct PassesSource {
 Result passes_program(const Passes *passes, const char *name, const char *defines,
                       const PassesSource *source, GLuint *out);
 
+/* Those that every method has, into passes. */
+Result passes_build_programs(Passes *passes);
+
 /* The G-buffer program of a geometry pass: TRANSPARENT, NEXT_PEEL or nothing. */
 Result passes_geometry_program(const Passes *passes, const char *name, const char *defines,
                                GLuint *out);

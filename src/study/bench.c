@@ -348,7 +348,8 @@ static Result run_threads(Group *group, BenchGroup take, void *context, BenchRep
         group->first = first;
         group->work = &work;
         result = child_run(&work);
-        bench_mark_pareto(out->rows + first, out->count - first);
+        if (result == RESULT_OK)
+            result = bench_mark_pareto(out->rows + first, out->count - first);
         if (result == RESULT_OK && take)
             take(context, out, first);
     }

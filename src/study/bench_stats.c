@@ -1,5 +1,8 @@
 #include "study/bench_stats.h"
 
+#include "base/memory.h"
+#include "study/pareto.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,19 +20,23 @@ double bench_median(double *values, int count, double *spread)
     return median;
 }
 
-static bool beats(const BenchRow *a, const BenchRow *b)
+Result bench_mark_pareto(BenchRow *rows, size_t count)
 {
-    return a->cpu_ms <= b->cpu_ms && a->rmse <= b->rmse &&
-           (a->cpu_ms < b->cpu_ms || a->rmse < b->rmse);
-}
-
-void bench_mark_pareto(BenchRow *rows, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        rows[i].pareto = isfinite(rows[i].rmse);
-        for (size_t k = 0; k < count && rows[i].pareto; k++)
-            rows[i].pareto = !beats(&rows[k], &rows[i]);
+    double *cost = memory_array(count, sizeof *cost), *error = memory_array(count, sizeof *error);
+    bool *marks = memory_array(count, sizeof *marks);
+    bool room = cost && error && marks;
+    for (size_t i = 0; room && i < count; i++) {
+        cost[i] = rows[i].cpu_ms;
+        error[i] = isfinite(rows[i].rmse) ? rows[i].rmse : NAN;
     }
+    if (room)
+        pareto_mark(cost, error, count, marks);
+    for (size_t i = 0; room && i < count; i++)
+        rows[i].pareto = marks[i];
+    free(cost);
+    free(error);
+    free(marks);
+    return room ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 bool bench_same_test(const BenchRow *a, const BenchRow *b)

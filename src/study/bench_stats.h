@@ -9,8 +9,8 @@
 double bench_median(double *values, int count, double *spread);
 
 /* Marks the rows that no other is as fast as, in CPU time, and as exact as, and better in one of
- * the two. A row without an error is never marked. */
-void bench_mark_pareto(BenchRow *rows, size_t count);
+ * the two. A row without an error is never marked. NO_MEMORY: none is. */
+Result bench_mark_pareto(BenchRow *rows, size_t count);
 
 /* CPU times of a renderer over those of ref in cells of equal settings. */
 typedef struct BenchRatios {

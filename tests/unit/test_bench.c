@@ -42,7 +42,7 @@ START_TEST(test_pareto)
     BenchRow rows[COUNT] = {{0}};
     for (int i = 0; i < COUNT; i++)
         rows[i] = (BenchRow){.cpu_ms = cases[i].cpu_ms, .rmse = cases[i].rmse, .pareto = true};
-    bench_mark_pareto(rows, COUNT);
+    ck_assert(bench_mark_pareto(rows, COUNT) == RESULT_OK);
     for (int i = 0; i < COUNT; i++)
         ck_assert_msg(rows[i].pareto == cases[i].front, "row %d", i);
 }
