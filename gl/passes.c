@@ -120,10 +120,10 @@ static void bind_textures(const Passes *passes, GLuint program, const Draw *item
     if (needs_has(&passes->needs, NEED_BASE_COLOR_TEXTURE))
         bind_texture(passes, program, material->base_color_texture, UNIT_BASE_COLOR,
                      UNIFORM_BASE_COLOR_SAMPLER);
-    if (has(passes, NEED_MATERIAL_TEXTURE))
+    if (needs_has(&passes->needs, NEED_MATERIAL_TEXTURE))
         bind_texture(passes, program, material->metallic_roughness_texture, UNIT_METALLIC_ROUGHNESS,
                      UNIFORM_METALLIC_ROUGHNESS_SAMPLER);
-    if (has(passes, NEED_MASK))
+    if (needs_has(&passes->needs, NEED_MASK))
         gl.ProgramUniform1f(program, UNIFORM_ALPHA_CUTOFF,
                             item->masked ? material->alpha_cutoff : 0.0f);
 }
@@ -136,7 +136,7 @@ void passes_use_draw(const Passes *passes, GLuint program, const Draw *draw)
     gl.ProgramUniformMatrix3fv(program, UNIFORM_NORMAL_MATRIX, 1, GL_FALSE, draw->normal_matrix);
     gl.ProgramUniform4fv(program, UNIFORM_BASE_COLOR, 1, material->base_color);
     gl.ProgramUniform3fv(program, UNIFORM_MATERIAL, 1, surface);
-    if (has(passes, NEED_CULLING))
+    if (needs_has(&passes->needs, NEED_CULLING))
         gl.ProgramUniform1i(program, UNIFORM_CULL_BACK, draw->cull_back);
     gl.ProgramUniform1i(program, UNIFORM_FLIPPED, draw->flipped);
     bind_textures(passes, program, draw);
