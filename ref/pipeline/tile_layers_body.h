@@ -8,7 +8,9 @@
 #include "ref/pipeline/tile_raster_body.h"
 
 enum {
-    LAYERS = 16,     /* of a round */
+    /* Of a round. With 1, peel after peel, a frame takes 1.6 times the instructions (teapot_hall)
+     * and 2.4 times (teapot_hall_stress; 1920x1080, one light, AVX2, by callgrind). */
+    LAYERS = 16,
     TRIANGLES = 1024 /* of a list that are set up at a time */
 };
 #define KEY_NONE    INT32_MAX /* of a layer without a fragment: behind every depth */
