@@ -163,6 +163,7 @@ typedef struct RenderDesc {
     PostEffect post;       /* of METHOD_LINKED_LIST */
     bool unfused;          /* model a driver without fused multiply-add */
     RefPath ref_path;
+    uint64_t mutations; /* ref: deliberate mistakes, bits of frame/mutation.h */
     SimdChoice simd;
     bool bound;        /* truth: fill Frame.bound */
     int tile;          /* ref: pixels per side, a power of two from TILE_MIN to TILE_MAX; 0:
