@@ -19,6 +19,7 @@ enum {
 /* A pixel's lit, premultiplied layers, front to back; alpha 0 where there is none. */
 typedef struct Pixel {
     double layer[LAYERS_MAX][4], opaque[4];
+    double ambient[LAYERS_MAX][4]; /* the ambient light's part of it */
     double background[3];
     int count; /* of this pixel */
     int peels; /* of the frame */
@@ -73,7 +74,10 @@ static void write_source(MutationId id, const double source[4], double out[4])
 
 static void blend(MutationId id, bool transparent, const double source[4], Mix *mix)
 {
+    static const double black[4] = {0.0, 0.0, 0.0, 1.0};
     double written[4];
+    if (source[3] == 0.0 && id == MUTATION_GBUFFER_CLEAR_ALPHA_1)
+        source = black;
     if (source[3] <= 1e-4 || (id == MUTATION_ALPHA_TEST_HALF && source[3] <= 0.5))
         return;
     write_source(id, source, written);
@@ -110,6 +114,15 @@ static int taken(MutationId id, const Pixel *pixel, int k)
     }
 }
 
+/* A layer whose ambient part was added without its alpha. */
+static void add_ambient(const Pixel *pixel, int layer, double out[4])
+{
+    double alpha = pixel->layer[layer][3];
+    memcpy(out, pixel->layer[layer], sizeof pixel->layer[layer]);
+    for (int i = 0; i < 3 && alpha > 0.0; i++)
+        out[i] += pixel->ambient[layer][i] / alpha * (1.0 - alpha);
+}
+
 static Mix accumulate(MutationId id, const Pixel *pixel)
 {
     Mix mix = empty;
@@ -121,8 +134,13 @@ static Mix accumulate(MutationId id, const Pixel *pixel)
         int layer = taken(id, pixel, k);
         if (id == MUTATION_ACCUMULATION_CLEARED)
             mix = empty;
-        if (layer >= 0 && layer < pixel->count)
-            blend(id, 2 * layer + 1 == pixel->count, pixel->layer[layer], &mix);
+        if (layer < 0 || layer >= LAYERS_MAX)
+            continue;
+        double lit[4];
+        memcpy(lit, pixel->layer[layer], sizeof lit);
+        if (id == MUTATION_AMBIENT_PER_LAYER)
+            add_ambient(pixel, layer, lit);
+        blend(id, 2 * layer + 1 == pixel->count, lit, &mix);
     }
     if (id != MUTATION_OPAQUE_BLENDED_FIRST)
         blend(id, false, pixel->opaque, &mix);
@@ -161,39 +179,52 @@ static void read_color(const TraceStore *store, const char *name, Image *out)
     ck_assert_int_eq(store_image(store, index, out), RESULT_OK);
 }
 
-/* Forward peeling stores lit colours; the frame's bits are those of deferred peeling. */
-static Pixel *right_layers(const Scene *scene, RenderDesc desc)
+/* Forward peeling stores lit colours; the frame's bits are those of deferred peeling. ambient: the
+ * ambient light alone, to where it goes. Returns the peels. */
+static int read_layers(const Scene *scene, bool ambient, Pixel *pixels)
 {
     TraceStore *store;
     Frame frame;
-    Image opaque, layer;
-    Pixel *pixels = calloc(WIDTH * HEIGHT, sizeof *pixels);
-    ck_assert_ptr_nonnull(pixels);
-    desc.method = METHOD_FORWARD;
+    RenderDesc desc = {.width = WIDTH, .height = HEIGHT, .method = METHOD_FORWARD};
+    desc.lights = ambient ? -1 : 0;
     ck_assert_int_eq(store_create(0, &store), RESULT_OK);
     ck_assert_int_eq(pipeline_render(scene, &desc, store_sink(store), &frame), RESULT_OK);
     ck_assert_int_le(frame.peels, LAYERS_MAX);
     ck_assert_uint_eq(frame.layers.lost_to_ties, 0);
-    read_color(store, "opaque.color", &opaque);
-    for (int k = 0; k < frame.peels; k++) {
-        char name[32];
-        snprintf(name, sizeof name, "peel.%d.color", k);
+    for (int k = -1; k < frame.peels; k++) {
+        char name[32] = "opaque.color";
+        Image layer;
+        if (k >= 0)
+            snprintf(name, sizeof name, "peel.%d.color", k);
         read_color(store, name, &layer);
         for (int p = 0; p < WIDTH * HEIGHT; p++) {
-            for (int i = 0; i < 4; i++) {
-                pixels[p].layer[k][i] = ((const float *)layer.pixels)[4 * p + i];
-                pixels[p].opaque[i] = ((const float *)opaque.pixels)[4 * p + i];
-            }
-            pixels[p].count += pixels[p].layer[k][3] > 0.0;
-            pixels[p].peels = frame.peels;
-            for (int i = 0; i < 3; i++)
-                pixels[p].background[i] = scene->background[i];
+            double *out = k >= 0 ? pixels[p].layer[k] : pixels[p].opaque;
+            if (ambient)
+                out = pixels[p].ambient[k >= 0 ? k : 0]; /* the opaque one is overwritten */
+            for (int i = 0; i < 4; i++)
+                out[i] = ((const float *)layer.pixels)[4 * p + i];
         }
         image_free(&layer);
     }
-    image_free(&opaque);
-    frame_free(&frame);
     store_destroy(store);
+    int peels = frame.peels;
+    frame_free(&frame);
+    return peels;
+}
+
+static Pixel *right_layers(const Scene *scene)
+{
+    Pixel *pixels = calloc(WIDTH * HEIGHT, sizeof *pixels);
+    ck_assert_ptr_nonnull(pixels);
+    int peels = read_layers(scene, false, pixels);
+    ck_assert_int_eq(read_layers(scene, true, pixels), peels);
+    for (Pixel *pixel = pixels; pixel < pixels + WIDTH * HEIGHT; pixel++) {
+        pixel->peels = peels;
+        while (pixel->count < peels && pixel->layer[pixel->count][3] > 0.0)
+            pixel->count++;
+        for (int i = 0; i < 3; i++)
+            pixel->background[i] = scene->background[i];
+    }
     return pixels;
 }
 
@@ -240,6 +271,8 @@ static const MutationId modelled[] = {
     MUTATION_PEEL_DEPTH_NOT_CLEARED,
     MUTATION_PASSES_SHORT,
     MUTATION_ALPHA_TEST_HALF,
+    MUTATION_GBUFFER_CLEAR_ALPHA_1,
+    MUTATION_AMBIENT_PER_LAYER,
     MUTATION_SRGB_ENCODED_TWICE,
     MUTATION_SRGB_BLENDED,
 };
@@ -251,7 +284,7 @@ START_TEST(test_model)
     Scene scene;
     ck_assert_int_eq(generate_find(names[_i])->generate(&scene), RESULT_OK);
     memcpy(scene.background, background, sizeof background);
-    Pixel *pixels = right_layers(&scene, (RenderDesc){.width = WIDTH, .height = HEIGHT});
+    Pixel *pixels = right_layers(&scene);
     for (size_t i = 0; i < sizeof modelled / sizeof *modelled; i++)
         check(names[_i], modelled[i], &scene, pixels);
     free(pixels);

@@ -191,6 +191,63 @@ START_TEST(test_same_as_settings)
 }
 END_TEST
 
+/* Roughness squared once more, and nothing double-sided: as other materials would have it. */
+START_TEST(test_same_as_materials)
+{
+    static const MutationId ids[] = {MUTATION_ROUGHNESS_SQUARED_TWICE, MUTATION_BACK_FACES_CULLED};
+    const RenderDesc desc = {.width = 64, .height = 48};
+    for (int i = 0; i < 2; i++) {
+        Scene scene;
+        Frame mutated, expected, right;
+        load("tutorial", &scene);
+        render(&scene, desc, 0, &right);
+        render(&scene, desc, mutation_bit(ids[i]), &mutated);
+        for (size_t k = 0; k < scene.material_count; k++) {
+            Material *material = &scene.materials[k];
+            if (ids[i] == MUTATION_BACK_FACES_CULLED)
+                material->double_sided = false;
+            else
+                material->roughness *= material->roughness;
+        }
+        render(&scene, desc, 0, &expected);
+        ck_assert_msg(same(&mutated, &expected), "%s", name_of((int)ids[i]));
+        ck_assert(!same(&mutated, &right));
+        frame_free(&mutated);
+        frame_free(&expected);
+        frame_free(&right);
+        scene_free(&scene);
+    }
+}
+END_TEST
+
+static double error_sum(const Frame *frame, const Frame *right)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 4 * frame->final.width * frame->final.height; i++)
+        sum += fabs((double)((const float *)frame->final.pixels)[i] -
+                    (double)((const float *)right->final.pixels)[i]);
+    return sum;
+}
+
+/* Rounding to the nearest half is right on average, truncation too dark; both round something. */
+START_TEST(test_halves)
+{
+    Scene scene;
+    Frame right, rounded, truncated;
+    const RenderDesc desc = {.width = 64, .height = 48};
+    load("tutorial", &scene);
+    render(&scene, desc, 0, &right);
+    render(&scene, desc, mutation_bit(MUTATION_ACCUMULATION_HALF_ROUNDED), &rounded);
+    render(&scene, desc, mutation_bit(MUTATION_ACCUMULATION_HALF), &truncated);
+    double nearest = error_sum(&rounded, &right), down = error_sum(&truncated, &right);
+    ck_assert_msg(nearest > 0.0 && nearest < 0.6 * down, "%g, truncated %g", nearest, down);
+    frame_free(&right);
+    frame_free(&rounded);
+    frame_free(&truncated);
+    scene_free(&scene);
+}
+END_TEST
+
 /* With a limit of passes the stale depth of the frame before is that of its last layer: the layers
  * behind it are what is left, and as many as the limit allows. */
 START_TEST(test_stale)
@@ -358,6 +415,8 @@ int main(void)
     tcase_set_timeout(all, 600);
     tcase_add_test(all, test_visible);
     tcase_add_test(all, test_same_as_settings);
+    tcase_add_test(all, test_same_as_materials);
+    tcase_add_test(all, test_halves);
     tcase_add_test(all, test_stale);
     tcase_add_test(all, test_pairs);
     tcase_add_test(all, test_pair_parts);
