@@ -3,6 +3,7 @@
 #ifndef PEEL_REF_FRAGMENT_H
 #define PEEL_REF_FRAGMENT_H
 
+#include "frame/mutation.h"
 #include "frame/shading.h"
 #include "ref/pipeline/encode.h"
 #include "ref/pipeline/pass.h"
@@ -75,6 +76,24 @@ static inline bool fragment_masked(const Pass *pass, const Setup *setup, const P
     return base[3] < op_flush(material->alpha_cutoff);
 }
 
+/* The interpolated normal as the vertices' give it, each of length 1: what is left of it where the
+ * fragment shader does not normalise. */
+static inline void fragment_short_normal(const Pass *pass, const Setup *setup, float inverse_w,
+                                         int x, int y, float normal[3])
+{
+    float scale[3];
+    for (int i = 0; i < 3; i++) {
+        const float *n = setup->corner[i]->normal;
+        scale[i] = op_inversesqrt(op_max(op_dot3(n, n), SHADING_TINY));
+    }
+    for (int i = 0; i < 3; i++) {
+        float corners[3];
+        for (int k = 0; k < 3; k++)
+            corners[k] = op_mul(setup->corner[k]->normal[i], scale[k]);
+        normal[i] = fragment_varying(pass, setup, corners, inverse_w, x, y);
+    }
+}
+
 /* Its position in view space; 0 where nothing needs it. */
 static inline void fragment_position(const Pass *pass, const Setup *setup, float inverse_w, int x,
                                      int y, float position[4])
@@ -103,6 +122,10 @@ static inline void fragment_normal(const Pass *pass, const Setup *setup, float i
                                      (float[3]){v[0]->normal[i], v[1]->normal[i], v[2]->normal[i]},
                                      inverse_w, x, y);
     float scale = op_inversesqrt(op_max(op_dot3(normal, normal), SHADING_TINY));
+    if (pass->desc->mutations & mutation_bit(MUTATION_NORMALS_NOT_NORMALISED)) {
+        fragment_short_normal(pass, setup, inverse_w, x, y, normal);
+        scale = 1.0f;
+    }
     bool turn = pass->desc->normals == NORMALS_FACED && !setup->front;
     for (int i = 0; i < 3; i++) {
         float n = op_mul(normal[i], scale);

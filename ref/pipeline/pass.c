@@ -1,6 +1,7 @@
 #include "ref/pipeline/pass.h"
 
 #include "base/memory.h"
+#include "ref/pipeline/mutate.h"
 
 #include <stdlib.h>
 
@@ -139,7 +140,10 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass
     Result result = view_build(scene, desc, &out->view);
     if (result != RESULT_OK)
         return result;
-    needs_derive(scene, &out->view, desc, traced, &out->needs);
+    if (desc->mutations)
+        mutate_view(scene, desc, &out->view);
+    /* A mistake may depend on what a right frame does not need. */
+    needs_derive(scene, &out->view, desc, traced || desc->mutations, &out->needs);
     for (int i = 0; i < 2; i++)
         out->stored[i] = needs_layout(&out->needs, desc, i == 1);
     out->tile = desc->tile ? desc->tile : TILE_DEFAULT;

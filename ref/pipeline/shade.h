@@ -13,11 +13,15 @@ typedef struct ShadeForm {
     ShadingModel model;
     GgxForm ggx;
     bool back_light;
+    bool lambert_whole; /* not divided by π: MUTATION_MISSING_1_OVER_PI */
 } ShadeForm;
 
 /* From fetched and decoded G-buffer values to the premultiplied source colour; false where the
  * alpha test discards. Flushing mode. */
 bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
+
+/* The same without the alpha test, and faster: lights that change no bit are left out. */
+void shade_skipping(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
 
 /* Resolve: final colour over the background from an accumulated pixel whose transmittance to the
  * background is `transmittance`. Flushing mode, as below. */

@@ -164,6 +164,7 @@ typedef struct RenderDesc {
     bool unfused;          /* model a driver without fused multiply-add */
     bool model_all;        /* leave nothing out that changes no bit (frame/needs.h) */
     RefPath ref_path;
+    uint64_t mutations; /* ref: deliberate mistakes, bits of frame/mutation.h */
     SimdChoice simd;
     bool bound;        /* truth: fill Frame.bound */
     int tile;          /* ref: pixels per side, a power of two from TILE_MIN to TILE_MAX; 0:
