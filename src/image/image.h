@@ -17,11 +17,11 @@ typedef struct Image {
 Result image_create(int width, int height, PixelFormat format, Image *out);
 void image_free(Image *image); /* leaves an empty image; NULL pixels are fine */
 
-static inline void image_swap(Image *a, Image *b)
+static inline void image_swap(Image *one, Image *other)
 {
-    Image image = *a;
-    *a = *b;
-    *b = image;
+    Image image = *one;
+    *one = *other;
+    *other = image;
 }
 
 static inline void *image_pixel(const Image *image, int x, int y)
