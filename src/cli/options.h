@@ -23,6 +23,7 @@ typedef enum FmaChoice {
 
 typedef struct RenderOptions {
     const char *scene_path; /* the argument SCENE; NULL until it is parsed */
+    bool scene_optional;    /* of the command: whether there may be none */
     RenderDesc desc;
     const char *camera; /* name or index; NULL: the first */
     bool has_opacity, has_background;

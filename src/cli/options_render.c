@@ -419,7 +419,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         options->scene_path = argument;
         return 0;
     case ARGP_KEY_SUCCESS:
-        if (!options->scene_path)
+        if (!options->scene_path && !options->scene_optional)
             return options_error("no scene given; expected a .gltf or .glb file or the name of a "
                                  "built-in scene");
         return 0;
