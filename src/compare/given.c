@@ -82,13 +82,16 @@ static void count_nonfinite(GivenImage *given)
 
 Result given_load(const char *path, GivenImage *out)
 {
-    unsigned char magic[4];
+    bool exr;
+    char magic[4];
     size_t count;
     *out = (GivenImage){0};
-    Result result = file_head(path, magic, sizeof magic, &count);
+    Result result = exr_is(path, &exr);
+    if (result == RESULT_OK)
+        result = file_head(path, magic, sizeof magic, &count);
     if (result != RESULT_OK)
         return result;
-    if (count == 4 && memcmp(magic, EXR_MAGIC, 4) == 0)
+    if (exr)
         result = load_exr(path, out);
     else if (count == 4 && memcmp(magic, "\x89PNG", 4) == 0)
         result = load_png(path, out);

@@ -201,6 +201,16 @@ static Result read_part(const ExrReader *reader, int part, Image *out)
     return result;
 }
 
+Result exr_is(const char *path, bool *is)
+{
+    static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
+    unsigned char head[4];
+    size_t count;
+    Result result = file_head(path, head, sizeof head, &count);
+    *is = result == RESULT_OK && count == 4 && memcmp(head, magic, 4) == 0;
+    return result;
+}
+
 Result exr_part_count(const char *path, int *count)
 {
     *count = 0;
