@@ -201,6 +201,16 @@ static Result read_part(const ExrReader *reader, int part, Image *out)
     return result;
 }
 
+Result exr_is(const char *path, bool *is)
+{
+    static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
+    unsigned char head[4];
+    size_t count;
+    Result result = file_head(path, head, sizeof head, &count);
+    *is = result == RESULT_OK && count == 4 && memcmp(head, magic, 4) == 0;
+    return result;
+}
+
 Result exr_part_count(const char *path, int *count)
 {
     *count = 0;
@@ -215,6 +225,42 @@ Result exr_part_count(const char *path, int *count)
     return result;
 }
 
+static void copy_name(const ExrReader *reader, int part, char name[64])
+{
+    const char *text;
+    name[0] = 0;
+    if (exr_get_name(reader->context, part, &text) == EXR_ERR_SUCCESS && text)
+        snprintf(name, 64, "%s", text);
+}
+
+Result exr_part_name(const char *path, int part, char name[64])
+{
+    ExrReader reader;
+    Result result = exr_reader_open(path, &reader);
+    if (result != RESULT_OK)
+        return result;
+    copy_name(&reader, part, name);
+    exr_reader_close(&reader);
+    return RESULT_OK;
+}
+
+Result exr_has_channel(const char *path, int part, const char *channel, bool *has)
+{
+    ExrReader reader;
+    const exr_attr_chlist_t *list;
+    exr_pixel_type_t type;
+    Result result = exr_reader_open(path, &reader);
+    if (result != RESULT_OK)
+        return result;
+    exr_result_t code = exr_get_channels(reader.context, part, &list);
+    if (code == EXR_ERR_SUCCESS)
+        *has = exr_find_channel(list, channel, &type);
+    else
+        result = exr_reader_fail(&reader, code);
+    exr_reader_close(&reader);
+    return result;
+}
+
 Result exr_read(const char *path, int part, Image *out, char name[64])
 {
     *out = (Image){0};
@@ -224,7 +270,6 @@ Result exr_read(const char *path, int part, Image *out, char name[64])
     if (result != RESULT_OK)
         return result;
     int count = 0;
-    const char *text;
     exr_get_count(reader.context, &count);
     if (part < 0 || part >= count)
         result =
@@ -233,8 +278,8 @@ Result exr_read(const char *path, int part, Image *out, char name[64])
         result = read_part(&reader, part, out);
     if (result != RESULT_OK)
         image_free(out);
-    else if (exr_get_name(reader.context, part, &text) == EXR_ERR_SUCCESS && text)
-        snprintf(name, 64, "%s", text);
+    else
+        copy_name(&reader, part, name);
     exr_reader_close(&reader);
     return result;
 }
