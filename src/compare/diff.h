@@ -84,8 +84,10 @@ typedef struct DiffPart {
     uint64_t broken;               /* pixels not finite on one side alone, or of two counts */
     uint64_t values, differing_values, nonfinite[DIFF_SIDES]; /* values, over all channels */
     int first[3]; /* x, y, channel of the first value that differs as it is stored, if one does */
-    double mean, rms, psnr, max; /* over all channels, as in DiffChannel */
-    DiffPixel max_at;            /* has values where max > 0 */
+    /* Over all channels, as in DiffChannel, but for integers (ids) beside others: where these
+     * differ a pixel is over the thresholds, but by how much says nothing. */
+    double mean, rms, psnr, max;
+    DiffPixel max_at; /* has values where max > 0 */
     DiffChannel *channels;
     int channel_count;
     DiffPixel *worst; /* by error, greatest first, then in reading order */

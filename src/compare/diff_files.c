@@ -272,13 +272,13 @@ static Result compare_parts(Source sources[DIFF_SIDES], int a, int b,
 
 /* ---- files ---- */
 
-/* The other file's part of the same name, else of the same place if neither has a name; −1. */
+/* The other file's part of the same name; of the same place where one of these has no name; −1. */
 static int find_part(const Source *other, const char *name, int part)
 {
-    if (!*name)
-        return part < part_count(other) && !*part_name(other, part) ? part : -1;
+    if (part < part_count(other) && (!*name || !*part_name(other, part)))
+        return part;
     for (int i = 0; i < part_count(other); i++)
-        if (strcmp(part_name(other, i), name) == 0)
+        if (*name && strcmp(part_name(other, i), name) == 0)
             return i;
     return -1;
 }

@@ -6,6 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_integer(const FoldChannel *channel)
+{
+    return channel->kind[0] == KIND_UINT && channel->kind[1] == KIND_UINT;
+}
+
+/* Whether the part's averages and its greatest error are of this channel too. */
+static bool is_averaged(const Fold *fold, int channel)
+{
+    return fold->integers || !is_integer(&fold->channels[channel]);
+}
+
 static Result begin_channel(const FoldChannel *from, DiffChannel *channel)
 {
     channel->name = strdup(from->name);
@@ -32,6 +43,9 @@ Result fold_begin(const DiffOptions *options, const FoldChannel *channels, int c
         return RESULT_NO_MEMORY;
     part->channel_count = count;
     Result result = RESULT_OK;
+    out->integers = true;
+    for (int i = 0; i < count; i++)
+        out->integers &= is_integer(&channels[i]);
     for (int i = 0; i < count && result == RESULT_OK; i++)
         result = begin_channel(&channels[i], &part->channels[i]);
     return result;
@@ -134,7 +148,7 @@ void fold_value(Fold *fold, int index, uint32_t sample, uint32_t a_bits, uint32_
         fold->part->first[1] = fold->pixel.y;
         fold->part->first[2] = index;
     }
-    if (error > fold->part->max && isfinite(error)) {
+    if (error > fold->part->max && isfinite(error) && is_averaged(fold, index)) {
         fold->part->max = error;
         fold->part->max_at = fold->pixel;
         fold->part->max_at.channel = index;
@@ -233,6 +247,8 @@ static void finish_channels(Fold *fold)
         channel->psnr = figures[2];
         part->values += channel->values;
         part->differing_values += channel->differing;
+        if (!is_averaged(fold, i))
+            continue;
         finite += channel->finite;
         all.sum += fold->sums[i].sum;
         all.squares += fold->sums[i].squares;

@@ -21,6 +21,7 @@ typedef struct Fold {
     const FoldChannel *channels;
     DiffPart *part;
     FoldSums *sums; /* of each channel */
+    bool integers;  /* there is nothing else: they count in the part's averages */
     int capacity;   /* of part->worst */
     bool broken, over_fail;
     uint8_t flags;

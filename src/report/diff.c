@@ -58,6 +58,17 @@ static void print_figures(const DiffPart *part, const DiffOptions *options, FILE
 
 /* ---- what idiff does not say ---- */
 
+/* How many bins have to be shown so that none with a value is left out. */
+static int used_bins(const DiffPart *part)
+{
+    int used = 1;
+    for (int c = 0; c < part->channel_count; c++)
+        for (int bin = used; bin < DIFF_BINS; bin++)
+            if (part->channels[c].bins[bin])
+                used = bin + 1;
+    return used;
+}
+
 static void print_channel(const DiffPart *part, const DiffChannel *channel, FILE *out)
 {
     char kinds[SUMMARY_NUMBER], place[SUMMARY_NUMBER] = "-", number[SUMMARY_NUMBER];
@@ -75,7 +86,7 @@ static void print_channel(const DiffPart *part, const DiffChannel *channel, FILE
         fprintf(out, " %13s", "-");
     else
         fprintf(out, " %13s", summary_count(channel->max_ulp, number));
-    for (int bin = 0; bin < DIFF_BINS && channel->has_ulp; bin++)
+    for (int bin = 0; bin < used_bins(part) && channel->has_ulp; bin++)
         fprintf(out, " %10s", summary_count(channel->bins[bin], number));
     fputc('\n', out);
 }
@@ -84,7 +95,7 @@ static void print_channels(const DiffPart *part, FILE *out)
 {
     fprintf(out, "  %-12s %-13s %11s %11s %8s %11s %12s %11s %13s", "channel", "stored as", "mean",
             "RMS", "PSNR", "max", "@", "differing", "max ULP");
-    for (int bin = 0; bin < DIFF_BINS; bin++)
+    for (int bin = 0; bin < used_bins(part); bin++)
         fprintf(out, " %10s", diff_bin_text(bin));
     fputc('\n', out);
     for (int c = 0; c < part->channel_count; c++)
