@@ -48,7 +48,10 @@ static const struct argp_option command_options[] = {
     {"failpercent", KEY_FAIL_PERCENT, "PERCENT", 0, "Allow so many pixels over it (default 0)", -4},
     {"hardfail", KEY_HARD_FAIL, "VAL", 0, "Fail if any value exceeds this (default inf)", -4},
     {"allowfailures", KEY_ALLOW, "N", 0, "N pixels may be over the thresholds (default 0)", -4},
-    {"warn", KEY_WARN, "VAL", 0, "Warning threshold (default 1e-6)", -4},
+    {"warn", KEY_WARN, "VAL", 0,
+     "Warning threshold (default 1e-6, but without any of these options only where a pixel is over "
+     "the failure threshold, too)",
+     -4},
     {"warnrelative", KEY_WARN_RELATIVE, "VAL", 0, "Relative warning threshold (default 0)", -4},
     {"warnpercent", KEY_WARN_PERCENT, "PERCENT", 0, "Allow so many pixels over it (default 0)", -4},
     {"hardwarn", KEY_HARD_WARN, "VAL", 0, "Warn if any value exceeds this (default inf)", -4},
@@ -93,6 +96,7 @@ static error_t parse_threshold(int key, char *argument, DiffOptions *options)
 {
     DiffThreshold *fail = &options->fail, *warn = &options->warn;
     long long allowed;
+    options->warn_always |= key >= KEY_WARN && key <= KEY_HARD_WARN;
     switch (key) {
     case KEY_FAIL:
         return parse_real("fail", argument, &fail->absolute);

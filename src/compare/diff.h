@@ -20,7 +20,8 @@ typedef struct DiffThreshold {
 
 typedef struct DiffOptions {
     DiffThreshold fail, warn;
-    int worst; /* pixels to keep, from 0 */
+    bool warn_always; /* else only where some pixel is over `fail`, as idiff 2.4 has it */
+    int worst;        /* pixels to keep, from 0 */
 } DiffOptions;
 
 DiffOptions diff_options_default(void); /* idiff's: 1e-6, nothing allowed, no hard limit */

@@ -287,7 +287,8 @@ Result fold_finish(Fold *fold, FoldFetch fetch, const void *context)
     finish_channels(fold);
     sort_worst(fold);
     part->verdict = DIFF_PASS;
-    if (is_too_much(&fold->options->warn, part->over_warn, part))
+    bool warns = fold->options->warn_always || part->over_fail;
+    if (warns && is_too_much(&fold->options->warn, part->over_warn, part))
         part->verdict = DIFF_WARNING;
     if (part->broken || is_too_much(&fold->options->fail, part->over_fail, part))
         part->verdict = DIFF_FAILURE;

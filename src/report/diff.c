@@ -295,13 +295,16 @@ void report_diff_print(const ReportDiff *diff, bool verbose, FILE *out)
 {
     static const char *const verdicts[] = {"PASS", "WARNING", "FAILURE"};
     const DiffReport *report = diff->report;
+    bool lacking = false;
+    for (size_t i = 0; i < report->count; i++)
+        lacking |= report->parts[i].lacks[0] || report->parts[i].lacks[1];
     print_parts(diff, verbose, out);
     if (report->deep_differs)
         fprintf(out, "One image contains deep data, the other does not\n");
     if (report->left_out)
         fprintf(out, "Left out: %d *.primitive buffers, which only one trace has\n",
                 report->left_out);
-    if (report->all && report->part_counts[0] != report->part_counts[1])
+    if (report->all && report->part_counts[0] != report->part_counts[1] && lacking)
         fprintf(out, "Images had differing numbers of subimages (%d vs %d)\n",
                 report->part_counts[0], report->part_counts[1]);
     if (!report->all && (report->part_counts[0] > 1 || report->part_counts[1] > 1))
