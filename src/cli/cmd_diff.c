@@ -41,40 +41,42 @@ enum {
 };
 
 static const struct argp_option command_options[] = {
-    {0, 0, 0, 0, "Thresholds, as idiff has them (a single dash will do: -fail 0.01):", -4},
-    {"fail", KEY_FAIL, "VAL", 0, "Failure threshold of the absolute difference (default 1e-6)", -4},
+    {0, 0, 0, 0, "Thresholds, as idiff has them (a single dash will do: -fail 0.01):", 1},
+    {"fail", KEY_FAIL, "VAL", 0, "Failure threshold of the absolute difference (default 1e-6)", 1},
     {"failrelative", KEY_FAIL_RELATIVE, "VAL", 0,
-     "Failure threshold relative to the mean magnitude; both must be exceeded (default 0)", -4},
-    {"failpercent", KEY_FAIL_PERCENT, "PERCENT", 0, "Allow so many pixels over it (default 0)", -4},
-    {"hardfail", KEY_HARD_FAIL, "VAL", 0, "Fail if any value exceeds this (default inf)", -4},
-    {"allowfailures", KEY_ALLOW, "N", 0, "N pixels may be over the thresholds (default 0)", -4},
+     "Failure threshold relative to the mean magnitude; both must be exceeded (default 0)", 1},
+    {"failpercent", KEY_FAIL_PERCENT, "PERCENT", 0, "Allow so many pixels over it (default 0)", 1},
+    {"hardfail", KEY_HARD_FAIL, "VAL", 0, "Fail if any value exceeds this (default inf)", 1},
+    {"allowfailures", KEY_ALLOW, "N", 0, "N pixels may be over the thresholds (default 0)", 1},
     {"warn", KEY_WARN, "VAL", 0,
      "Warning threshold (default 1e-6, but without any of these options only where a pixel is over "
      "the failure threshold, too)",
-     -4},
-    {"warnrelative", KEY_WARN_RELATIVE, "VAL", 0, "Relative warning threshold (default 0)", -4},
-    {"warnpercent", KEY_WARN_PERCENT, "PERCENT", 0, "Allow so many pixels over it (default 0)", -4},
-    {"hardwarn", KEY_HARD_WARN, "VAL", 0, "Warn if any value exceeds this (default inf)", -4},
-    {0, 0, 0, 0, "What is compared:", -3},
-    {"all", 'a', 0, 0, "All parts, by name (of two traces always); else the first", -3},
-    {"channels", KEY_CHANNELS, "R,G,B", 0, "These channels alone; both files must have them", -3},
-    {0, 0, 0, 0, "What is said:", -2},
-    {"verbose", 'v', 0, 0, "The figures of parts that pass, too", -2},
-    {"quiet", 'q', 0, 0, "Nothing: the exit code says it", -2},
+     1},
+    {"warnrelative", KEY_WARN_RELATIVE, "VAL", 0, "Relative warning threshold (default 0)", 1},
+    {"warnpercent", KEY_WARN_PERCENT, "PERCENT", 0, "Allow so many pixels over it (default 0)", 1},
+    {"hardwarn", KEY_HARD_WARN, "VAL", 0, "Warn if any value exceeds this (default inf)", 1},
+    {0, 0, 0, 0, "What is compared:", 2},
+    {"all", 'a', 0, 0, "All parts, by name (of two traces always); else the first", 2},
+    {"channels", KEY_CHANNELS, "R,G,B", 0, "These channels alone; both files must have them", 2},
+    {"perceptual", 'p', 0, 0,
+     "Also whether a person would see it (Yee 2004), where there are R, G and B", 2},
+    {0, 0, 0, 0, "What is said:", 3},
+    {"verbose", 'v', 0, 0, "The figures of parts that pass, too", 3},
+    {"quiet", 'q', 0, 0, "Nothing: the exit code says it", 3},
     {"output", 'o', "FILE", 0,
      "Of the first part that differs: PNG, a heat map of each pixel's greatest difference (black "
      "equal, then 1e-8 to 1 on a logarithmic scale, magenta not finite); EXR, A - B of every "
      "channel",
-     -2},
-    {"od", KEY_ONLY_IF_DIFFERENT, 0, 0, "Write -o only if something differs", -2},
-    {"abs", KEY_ABS, 0, 0, "In an EXR the absolute difference", -2},
-    {"scale", KEY_SCALE, "FACTOR", 0, "Multiply what -o writes (default 1)", -2},
-    {"worst", KEY_WORST, "N", 0, "So many of the worst pixels (default 5)", -2},
-    {"json", KEY_JSON, "FILE", 0, "Every figure", -2},
+     3},
+    {"od", KEY_ONLY_IF_DIFFERENT, 0, 0, "Write -o only if something differs", 3},
+    {"abs", KEY_ABS, 0, 0, "In an EXR the absolute difference", 3},
+    {"scale", KEY_SCALE, "FACTOR", 0, "Multiply what -o writes (default 1)", 3},
+    {"worst", KEY_WORST, "N", 0, "So many of the worst pixels (default 5)", 3},
+    {"json", KEY_JSON, "FILE", 0, "Every figure", 3},
     {"scene", KEY_SCENE, "SCENE", 0,
      "What A or B shows, with the options below (its size is the images'): the class of each "
      "pixel that differs, why ref is not truth there",
-     -1},
+     4},
     {0},
 };
 
@@ -156,6 +158,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case 'a':
         command->files.all = true;
         return 0;
+    case 'p':
+        command->files.diff.perceptual = true;
+        return 0;
     case 'q':
         command->quiet = true;
         return 0;
@@ -195,7 +200,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{&options_render_argp, 0, NULL, 1}, {0}};
+static const struct argp_child children[] = {{&options_render_argp, 0, NULL, 5}, {0}};
 static const struct argp command_argp = {
     command_options,
     parse,
@@ -260,6 +265,8 @@ static Result classify(DiffCommand *command, const DiffReport *report, Budget *o
     const DiffPart *part = &report->parts[report->pictured];
     RenderDesc *desc = &command->render.desc;
     Scene scene;
+    if (command->render.all_methods)
+        return result_fail(RESULT_BAD_INPUT, "--method all: expected a single method");
     if (desc->width && (desc->width != part->width || desc->height != part->height))
         return result_fail(RESULT_BAD_INPUT, "--size %dx%d: the images have %dx%d pixels",
                            desc->width, desc->height, part->width, part->height);

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "compare/diff_fold.h"
+#include "compare/perceive.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -124,6 +125,16 @@ static Result compare(const Pairs *pairs, const DiffOptions *options, DiffPart *
     return result;
 }
 
+static Result perceive(const Planes *a, const Planes *b, const DiffOptions *options, DiffPart *part)
+{
+    Result result = perceive_count(a, b, &part->seen);
+    part->perceived = true;
+    if ((double)part->seen > options->fail.percent / 100.0 * (double)part->pixels &&
+        part->seen > options->fail.allowed)
+        part->verdict = DIFF_FAILURE;
+    return result;
+}
+
 Result diff_planes(const Planes *a, const Planes *b, const DiffOptions *options, DiffPart *out)
 {
     Pairs pairs;
@@ -131,6 +142,8 @@ Result diff_planes(const Planes *a, const Planes *b, const DiffOptions *options,
     Result result = make_pairs(a, b, &pairs);
     if (result == RESULT_OK)
         result = compare(&pairs, options, out);
+    if (result == RESULT_OK && options->perceptual && perceive_possible(a, b))
+        result = perceive(a, b, options, out);
     free_pairs(&pairs);
     return result;
 }

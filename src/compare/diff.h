@@ -21,6 +21,7 @@ typedef struct DiffThreshold {
 typedef struct DiffOptions {
     DiffThreshold fail, warn;
     bool warn_always; /* else only where some pixel is over `fail`, as idiff 2.4 has it */
+    bool perceptual;  /* test, too, whether the difference is seen (compare/perceive.h) */
     int worst;        /* pixels to keep, from 0 */
 } DiffOptions;
 
@@ -100,6 +101,8 @@ typedef struct DiffPart {
     uint64_t counts_differ;       /* deep: pixels with another number of samples */
     int count_at[2];              /* the first of them */
     uint32_t counts_there[DIFF_SIDES];
+    bool perceived; /* it was tested whether the difference is seen */
+    uint64_t seen;  /* and in so many pixels it is: a failure beyond fail.percent of them */
     DiffVerdict verdict;
 } DiffPart;
 

@@ -320,6 +320,12 @@ Result diff_files(const char *a, const char *b, const DiffFilesOptions *options,
     }
     close_source(&sources[0]);
     close_source(&sources[1]);
+    bool perceived = !options->diff.perceptual || out->sizes_differ || out->deep_differs;
+    for (size_t i = 0; i < out->count; i++)
+        perceived |= out->parts[i].perceived;
+    if (result == RESULT_OK && !perceived)
+        result = result_fail(RESULT_BAD_INPUT,
+                             "%s, %s: nothing to see, expected R, G and B in both", a, b);
     return result;
 }
 

@@ -54,6 +54,9 @@ static void print_figures(const DiffPart *part, const DiffOptions *options, FILE
     fputc('\n', out);
     print_over(part->over_warn, part, options->warn.absolute, out);
     print_over(part->over_fail, part, options->fail.absolute, out);
+    if (part->perceived)
+        fprintf(out, "  %llu pixels (%3.3g%%) failed the perceptual test\n",
+                (unsigned long long)part->seen, 100.0 * (double)part->seen / (double)part->pixels);
 }
 
 /* ---- what idiff does not say ---- */

@@ -88,6 +88,8 @@ static void put_figures(Document *json, const DiffPart *part, json_t *one)
     document_put(json, one, "differing", document_count(part->differing_values));
     document_put(json, one, "over_warn", document_count(part->over_warn));
     document_put(json, one, "over_fail", document_count(part->over_fail));
+    if (part->perceived)
+        document_put(json, one, "perceptual", document_count(part->seen));
     document_put(json, one, "nonfinite", pair_of_counts(part->nonfinite[0], part->nonfinite[1]));
     document_put(json, one, "nonfinite_one_side",
                  document_count(part->broken - part->counts_differ));

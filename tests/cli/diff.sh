@@ -185,6 +185,12 @@ exits 2 'worst' "$peel" diff --worst 2 a.exr b.exr
 says 'worst' '^  2, 1  *G  *0.375 '
 exits 0 'two of them' test "$(grep -c ', 1  *G  *0.375 ' output)" = 2
 
+exits 2 'what is seen' "$peel" diff -p -fail 1 -warn 1 a.exr b.exr
+says 'what is seen' '^  6 pixels (12.5%) failed the perceptual test$'
+exits 0 'what may be seen' "$peel" diff -p -fail 1 -warn 1 -failpercent 12.5 a.exr b.exr
+exits 0 'what is not seen' "$peel" diff -p -v a.exr a.exr
+says 'what is not seen' '^  0 pixels (  0%) failed the perceptual test$'
+
 # Deep images and traces.
 for alpha in 0.5 0.25; do
     exits 0 'deep' "$peel" render tutorial --size 48x32 --lights 4 --opacity $alpha --with truth \
@@ -246,6 +252,8 @@ for file in missing.png directory.png empty.png text.exr cut.png cut.exr cut_tra
 done
 refuse 'no common channel' 'a.exr has the channels R, G, B, A, zonly.exr has Z: none in common' \
     a.exr zonly.exr
+refuse 'nothing to see' 'expected R, G and B in both' -p grey.png grey.png
+refuse 'all methods' 'expected a single method' --scene chain --method all a.exr b.exr
 refuse 'grey' 'none in common' grey.png a.png
 refuse 'no such channel' '--channels R,Q: a.exr has only R, G, B, A' --channels R,Q a.exr b.exr
 refuse 'no channels' 'expected names' --channels= a.exr b.exr
