@@ -1,16 +1,14 @@
 #include "compare/diff_files.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "image/decode.h"
 #include "image/exr_deep.h"
 #include "image/exr_planes.h"
-#include "scene/gltf_file.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* ---- a file ---- */
 
@@ -26,23 +24,14 @@ static void close_source(Source *source)
     planes_free(&source->image);
 }
 
-/* Looked at before it is opened: opening a pipe would wait for its other end. */
 static Result is_exr(const char *path, bool *out)
 {
     static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
-    unsigned char start[4] = {0};
-    struct stat status;
-    if (stat(path, &status) != 0)
-        return result_fail(RESULT_IO, "%s: cannot read this file: %s", path, strerror(errno));
-    if (!S_ISREG(status.st_mode))
-        return result_fail(RESULT_BAD_INPUT, "%s: not a regular file, expected an image", path);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return result_fail(RESULT_IO, "%s: cannot read this file: %s", path, strerror(errno));
-    size_t got = fread(start, 1, sizeof start, file);
-    fclose(file);
-    *out = got == sizeof magic && memcmp(start, magic, sizeof magic) == 0;
-    return RESULT_OK;
+    unsigned char start[4];
+    size_t count;
+    Result result = file_head(path, start, sizeof start, &count);
+    *out = result == RESULT_OK && count == sizeof magic && memcmp(start, magic, count) == 0;
+    return result;
 }
 
 static Result read_png(const char *path, size_t max_bytes, Planes *out)
@@ -50,7 +39,7 @@ static Result read_png(const char *path, size_t max_bytes, Planes *out)
     unsigned char *bytes;
     size_t count;
     Image image = {0};
-    Result result = gltf_file_read(path, &bytes, &count);
+    Result result = file_load(path, &bytes, &count);
     if (result != RESULT_OK)
         return result;
     if (count < 4 || (memcmp(bytes, "\x89PNG", 4) != 0 && memcmp(bytes, "\xff\xd8\xff", 3) != 0))
