@@ -147,7 +147,9 @@ exits 1 'a relative one' "$peel" diff -fail 1 -warnrelative .5 a.exr b.exr
 exits 0 'a relative one' "$peel" diff -fail 1 -warnrelative .6 a.exr b.exr
 exits 3 'sizes' "$peel" diff a.exr wide.exr
 says 'sizes' '^peel: sizes differ: a.exr has 8x6 pixels, wide.exr has 9x6$'
-exits 3 'sizes, quietly' "$peel" diff -q a.exr wide.exr
+exits 3 'sizes, quietly' "$peel" diff -q a.exr wide.exr --json sizes.json -o sizes.png
+exits 0 'sizes in JSON' grep -q '"verdict": "sizes"' sizes.json
+exits 1 'no picture of sizes' test -e sizes.png
 exits 3 'windows' "$peel" diff a.exr moved.exr
 says 'windows' 'a.exr has 8x6 pixels from 0,0, moved.exr has 8x6 from 1,0$'
 for other in a inf minus; do
