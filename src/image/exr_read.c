@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The format that the part says it holds, if its channels can hold it. */
-static bool declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,
-                            PixelFormat *out)
+bool exr_declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,
+                         PixelFormat *out)
 {
     const char *text;
     int32_t length;
@@ -79,7 +78,7 @@ static Result part_format(const ExrReader *reader, int part, PixelFormat *out)
             return result_fail(RESULT_UNSUPPORTED,
                                "%s: channel %s is subsampled, expected one value per pixel",
                                reader->path, list->entries[i].name.str);
-    if (declared_format(reader, part, list, out))
+    if (exr_declared_format(reader, part, list, out))
         return RESULT_OK;
     return guess_format(reader, list, out);
 }
