@@ -73,6 +73,15 @@ static Result widened_buffer(const TraceStore *store, int index, Image *out)
     return result;
 }
 
+/* Of final colours: what single precision may do to them, where that is asked for. */
+static void allow_bound(const CheckRun *run, JudgeDesc *desc)
+{
+    if (!run->truth.bound.pixels)
+        return;
+    desc->center = &run->truth.final;
+    desc->slack = &run->truth.bound;
+}
+
 /* ---- their image ------------------------------------------------------------------------------
  */
 
@@ -95,10 +104,7 @@ static Result check_image(CheckRun *run)
                       .reference_format = FORMAT_RGBA32F,
                       .channels = reading.meaning.alpha == GIVEN_ALPHA_NONE ? 3 : 4,
                       .tolerance = report->tolerance};
-    if (run->truth.bound.pixels) {
-        desc.center = &run->truth.final;
-        desc.slack = &run->truth.bound;
-    }
+    allow_bound(run, &desc);
     CheckStep *step = add_step(run, INT_MAX, "image");
     result = step ? judge_step(step, &desc) : RESULT_NO_MEMORY;
     image_swap(&report->theirs_image, &reading.linear);
@@ -116,6 +122,7 @@ static void display_desc(const CheckRun *run, JudgeDesc *desc)
     desc->display = &run->report->frame.display;
     desc->encoding = GIVEN_SEED;
     desc->channels = 3;
+    allow_bound(run, desc);
 }
 
 static Result judge_buffer(CheckRun *run, CheckStep *step, int theirs, int reference)

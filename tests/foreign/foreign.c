@@ -154,7 +154,7 @@ static void load_scene(const char *folder)
     glBindBuffer(GL_ARRAY_BUFFER, names[1]);
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size, vertices, GL_STATIC_DRAW);
     for (GLuint i = 0; i < 2; i++) {
-        glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 32, (char *)0 + 12 * i);
+        glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 32, (void *)(12 * (size_t)i));
         glEnableVertexAttribArray(i);
     }
     void *indices = load(folder, "indices.bin", &size);
@@ -220,7 +220,7 @@ static int draw(int target, int peel, GLuint surface)
         glDrawElementsBaseVertex(
             GL_TRIANGLES, (int)json_integer_value(json_object_get(object, "index_count")),
             GL_UNSIGNED_INT,
-            (char *)0 + 4 * json_integer_value(json_object_get(object, "first_index")),
+            (void *)(4 * (size_t)json_integer_value(json_object_get(object, "first_index"))),
             (int)json_integer_value(json_object_get(object, "base_vertex")));
     }
     glEndQuery(GL_ANY_SAMPLES_PASSED);
