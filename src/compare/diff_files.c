@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "image/decode.h"
+#include "image/exr.h"
 #include "image/exr_deep.h"
 #include "image/exr_planes.h"
 
@@ -22,16 +23,6 @@ static void close_source(Source *source)
 {
     exr_file_close(source->exr);
     planes_free(&source->image);
-}
-
-static Result is_exr(const char *path, bool *out)
-{
-    static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
-    unsigned char start[4];
-    size_t count;
-    Result result = file_head(path, start, sizeof start, &count);
-    *out = result == RESULT_OK && count == sizeof magic && memcmp(start, magic, count) == 0;
-    return result;
 }
 
 static Result read_png(const char *path, size_t max_bytes, Planes *out)
@@ -57,7 +48,7 @@ static Result open_source(const char *path, size_t max_bytes, Source *out)
 {
     bool exr = false;
     *out = (Source){.path = path};
-    Result result = is_exr(path, &exr);
+    Result result = exr_is(path, &exr);
     if (result == RESULT_OK)
         result = exr ? exr_file_open(path, &out->exr) : read_png(path, max_bytes, &out->image);
     return result;

@@ -204,7 +204,7 @@ static Result write_json(const ContractDesc *contract, const View *view, const c
     document_put(&json, root, "width", json_integer(view->width));
     document_put(&json, root, "height", json_integer(view->height));
     document_put(&json, root, "passes", json_integer(contract->desc.passes));
-    document_put(&json, root, "check", json_string(contract->check));
+    document_put(&json, root, "check", document_text(contract->check));
     document_put(&json, root, "settings", make_settings(&json, contract));
     put_scene(&json, root, contract, view);
     return document_write(&json, root, path);
@@ -276,7 +276,7 @@ static Result write_glsl(const ContractDesc *contract, size_t light_count, const
                       "(position; color;\n// attenuation and inverse_range2) in uniform block "
                       "binding 0.\n%s#define LIGHT_COUNT %zu\n%s%s",
                       contract->glsl_constants, light_count,
-                      light_count > 1024 ? "#define LIGHTS_STORAGE\n" : "",
+                      light_count > 341 ? "#define LIGHTS_STORAGE\n" : "",
                       "#define LIGHT_RANGES\n");
     if (contract->desc.shading == SHADING_PHONG)
         file_writer_print(&writer, "#define PHONG\n");
