@@ -1,5 +1,7 @@
 #include "base/file.h"
 
+#include "base/memory.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -266,5 +268,55 @@ Result file_make_directories(const char *path)
     free(partial);
     if (error)
         return result_fail(RESULT_IO, "%s: cannot make this directory: %s", path, strerror(error));
+    return RESULT_OK;
+}
+
+/* A regular file, open, and its size. */
+static Result open_regular(const char *path, FILE **out, uint64_t *size)
+{
+    struct stat info;
+    /* Looked at before it is opened: opening a pipe would wait for its other end. */
+    if (stat(path, &info))
+        return result_fail(RESULT_IO, "%s: cannot read: %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode))
+        return result_fail(RESULT_BAD_INPUT, "%s: not a regular file", path);
+    *size = (uint64_t)info.st_size;
+    *out = fopen(path, "rb");
+    return *out ? RESULT_OK : result_fail(RESULT_IO, "%s: cannot read: %s", path, strerror(errno));
+}
+
+Result file_load(const char *path, unsigned char **bytes, size_t *count)
+{
+    FILE *file = NULL;
+    uint64_t size = 0;
+    Result result = open_regular(path, &file, &size);
+    if (result != RESULT_OK)
+        return result;
+    *bytes = NULL;
+    if (size > UINT32_MAX)
+        result = result_fail(RESULT_BAD_INPUT, "%s: larger than 4 GiB", path);
+    *count = (size_t)size;
+    if (result == RESULT_OK)
+        *bytes = memory_array(*count + 1, 1);
+    if (result == RESULT_OK && !*bytes)
+        result = RESULT_NO_MEMORY;
+    if (!result && fread(*bytes, 1, *count, file) != *count) {
+        result = result_fail(RESULT_IO, "%s: cannot read all of its %zu bytes", path, *count);
+        free(*bytes);
+        *bytes = NULL;
+    }
+    fclose(file);
+    return result;
+}
+
+Result file_head(const char *path, void *bytes, size_t size, size_t *count)
+{
+    FILE *file = NULL;
+    uint64_t all = 0;
+    Result result = open_regular(path, &file, &all);
+    if (result != RESULT_OK)
+        return result;
+    *count = fread(bytes, 1, size, file);
+    fclose(file);
     return RESULT_OK;
 }

@@ -36,6 +36,14 @@ Result file_writer_close(FileWriter *writer, bool commit);
 /* size bytes as one file. */
 Result file_write(const char *path, const void *data, size_t size);
 
+/* The whole of a regular file below 4 GiB. The caller frees *bytes, which has a 0 behind its end.
+ * IO when it cannot be read, BAD_INPUT when it is no regular file or too large. */
+Result file_load(const char *path, unsigned char **bytes, size_t *count);
+
+/* The first bytes of a regular file, at most size of them, to bytes; *count says how many there
+ * are. Failures as above. */
+Result file_head(const char *path, void *bytes, size_t size, size_t *count);
+
 /* Unlinks the temporary files of all open writers. For a handler of a signal that ends the
  * program: async-signal-safe. */
 void file_remove_temporaries(void);

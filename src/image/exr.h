@@ -9,6 +9,8 @@
 
 #include "image/image.h"
 
+#include <stdbool.h>
+
 typedef struct ExrPart {
     const char *name; /* unique in the file; NULL for a single unnamed part */
     PixelFormat format;
@@ -31,5 +33,7 @@ Result exr_write(const Image *image, const char *path);
  * channel. part: index. The caller frees *out; name receives the part's name ("" if none). */
 Result exr_read(const char *path, int part, Image *out, char name[64]);
 Result exr_part_count(const char *path, int *count);
+/* Whether a part has a channel of this name. */
+Result exr_has_channel(const char *path, int part, const char *channel, bool *has);
 
 #endif

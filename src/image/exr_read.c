@@ -215,6 +215,23 @@ Result exr_part_count(const char *path, int *count)
     return result;
 }
 
+Result exr_has_channel(const char *path, int part, const char *channel, bool *has)
+{
+    ExrReader reader;
+    const exr_attr_chlist_t *list;
+    exr_pixel_type_t type;
+    Result result = exr_reader_open(path, &reader);
+    if (result != RESULT_OK)
+        return result;
+    exr_result_t code = exr_get_channels(reader.context, part, &list);
+    if (code == EXR_ERR_SUCCESS)
+        *has = exr_find_channel(list, channel, &type);
+    else
+        result = exr_reader_fail(&reader, code);
+    exr_reader_close(&reader);
+    return result;
+}
+
 Result exr_read(const char *path, int part, Image *out, char name[64])
 {
     *out = (Image){0};

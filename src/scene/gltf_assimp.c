@@ -1,5 +1,6 @@
 #include "scene/gltf_assimp.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "scene/gltf_file.h"
 
@@ -86,7 +87,7 @@ static bool read_buffer(const char *document, const char *joined, MemoryFile *ou
     const char *uri = strncmp(joined, document, folder) == 0 ? joined + folder : joined;
     char *path = NULL;
     bool read = gltf_file_beside(document, uri, &path) == RESULT_OK &&
-                gltf_file_read(path, &out->owned, &out->count) == RESULT_OK;
+                file_load(path, &out->owned, &out->count) == RESULT_OK;
     free(path);
     out->bytes = out->owned;
     return read;

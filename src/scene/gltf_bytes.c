@@ -1,5 +1,6 @@
 #include "scene/gltf_bytes.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "scene/gltf_file.h"
 
@@ -34,7 +35,7 @@ static Result read_uri(const GltfBytes *bytes, const char *what, size_t index, c
             result = result_fail(RESULT_BAD_INPUT, "%s: %s %zu: no file %s beside it", bytes->path,
                                  what, index, uri);
         if (!result)
-            result = gltf_file_read(path, &out->owned, &out->count);
+            result = file_load(path, &out->owned, &out->count);
         free(path);
         if (result)
             return result;

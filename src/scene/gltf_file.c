@@ -2,43 +2,16 @@
 
 #include "base/memory.h"
 
-#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 /* Source: glTF 2.0, 4.4 (binary glTF layout). */
 #define GLB_MAGIC 0x46546c67u
 #define GLB_JSON  0x4e4f534au
 #define GLB_BIN   0x004e4942u
-
-Result gltf_file_read(const char *path, unsigned char **bytes, size_t *count)
-{
-    struct stat info;
-    /* Looked at before it is opened: opening a pipe would wait for its other end. */
-    if (stat(path, &info))
-        return result_fail(RESULT_IO, "%s: cannot read: %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return result_fail(RESULT_BAD_INPUT, "%s: not a regular file", path);
-    if ((uint64_t)info.st_size > UINT32_MAX)
-        return result_fail(RESULT_BAD_INPUT, "%s: larger than 4 GiB", path);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return result_fail(RESULT_IO, "%s: cannot read: %s", path, strerror(errno));
-    *count = (size_t)info.st_size;
-    *bytes = memory_array(*count + 1, 1);
-    Result result = *bytes ? RESULT_OK : RESULT_NO_MEMORY;
-    if (!result && fread(*bytes, 1, *count, file) != *count) {
-        result = result_fail(RESULT_IO, "%s: cannot read all of its %zu bytes", path, *count);
-        free(*bytes);
-        *bytes = NULL;
-    }
-    fclose(file);
-    return result;
-}
 
 static int digit_value(char c)
 {

@@ -6,10 +6,6 @@
 
 #include <stddef.h>
 
-/* The whole of a regular file below 4 GiB. The caller frees *bytes, which has a 0 behind its end.
- * IO when it cannot be read, BAD_INPUT when it is no regular file or too large. */
-Result gltf_file_read(const char *path, unsigned char **bytes, size_t *count);
-
 /* The path of an external buffer: the uri, its %XX decoded (RFC 3986, 2.1), beside the file at
  * path. The caller frees *out. BAD_INPUT for a malformed escape or %00, NO_MEMORY. */
 Result gltf_file_beside(const char *path, const char *uri, char **out);

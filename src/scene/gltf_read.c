@@ -1,5 +1,6 @@
 #include "scene/gltf_read.h"
 
+#include "base/file.h"
 #include "scene/gltf_check.h"
 #include "scene/gltf_file.h"
 #include "scene/gltf_graph.h"
@@ -53,7 +54,7 @@ static Result parse(const char *path, GltfJson *json)
 {
     size_t count = 0, length = 0;
     const char *text = NULL;
-    Result result = gltf_file_read(path, &json->file, &count);
+    Result result = file_load(path, &json->file, &count);
     if (result)
         return result;
     if (gltf_file_kind(path) == 1) {

@@ -341,7 +341,7 @@ START_TEST(written_textures_come_back)
         scene_free(&again);
         unsigned char *bytes;
         size_t count;
-        ck_assert_int_eq(gltf_file_read(path, &bytes, &count), RESULT_OK);
+        ck_assert_int_eq(file_load(path, &bytes, &count), RESULT_OK);
         const char *text = (const char *)bytes + (binary ? 20 : 0); /* behind the header */
         ck_assert_int_eq(strstr(text, "data:") == NULL, binary);    /* not in binary files */
         free(bytes);
