@@ -17,6 +17,7 @@ int bind_find_renderer(const char *name);
 int cmd_bench(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
+int cmd_diagnose(int argc, char **argv);
 int cmd_driver(int argc, char **argv);
 int cmd_flatten(int argc, char **argv);
 int cmd_hard(int argc, char **argv);

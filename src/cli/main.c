@@ -20,6 +20,7 @@ static const Command commands[] = {
     {"render", "one renderer to PNG, EXR or deep EXR, with --trace every buffer", cmd_render},
     {"bench", "speed against error, over scenes, passes, lights, threads and more", cmd_bench},
     {"compare", "all three renderers; table, JSON, report", cmd_compare},
+    {"diagnose", "which known mistake explains an image by another program", cmd_diagnose},
     {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
     {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
     {"hard", "the hard cases, each against its own expectation", cmd_hard},

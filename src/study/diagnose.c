@@ -1,0 +1,423 @@
+#include "study/diagnose.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/progress.h"
+#include "study/evidence.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    KEPT = 8,          /* files of the best mistakes so far, to find equals among */
+    PAIRED_GROUPS = 4, /* the best mistakes that are tried in pairs: of so many files, */
+    PAIRED_ROWS = 6,   /* so many at most */
+    ROWS = MUTATION_COUNT + PAIRED_ROWS * (PAIRED_ROWS - 1) / 2
+};
+#define PAIR_GAIN 0.02 /* what a pair has to explain beyond the better of the two */
+
+typedef struct Kept {
+    int row;
+    Image predicted;
+} Kept;
+
+typedef struct Work {
+    const Scene *scene;
+    RenderDesc desc;
+    Renderer ref;
+    Fit fit;
+    Image final; /* of the reference */
+    FitResult none;
+    Image predicted; /* of the reference, in the form of `none` */
+    Kept kept[KEPT];
+    int kept_count, groups;
+    Diagnosis *out;
+} Work;
+
+/* ---- rendering ------------------------------------------------------------------------------- */
+
+static Result render(Work *work, const RenderDesc *desc, const char *label, Image *out)
+{
+    Frame frame;
+    progress_begin(label, 0);
+    Result result = work->ref(work->scene, desc, NULL, &frame);
+    progress_end();
+    if (result != RESULT_OK)
+        return result;
+    *out = frame.final;
+    frame.final = (Image){0};
+    frame_free(&frame);
+    work->out->rendered++;
+    return RESULT_OK;
+}
+
+static RenderDesc with_mutations(const Work *work, uint64_t mutations)
+{
+    RenderDesc asked = work->desc, out;
+    asked.mutations = mutations;
+    mutation_apply(&asked, &out);
+    return out;
+}
+
+static bool same_bits(const Image *a, const Image *b)
+{
+    size_t pixels = (size_t)a->width * (size_t)a->height;
+    return memcmp(a->pixels, b->pixels, pixels * format_pixel_bytes(a->format)) == 0;
+}
+
+/* ---- hypotheses ------------------------------------------------------------------------------ */
+
+static bool same_form(const GivenMeaning *a, const GivenMeaning *b)
+{
+    return a->encoding == b->encoding && a->rows == b->rows && a->alpha == b->alpha;
+}
+
+/* Exact ones first; then what explains more. */
+static int compare_rows(const void *first, const void *second)
+{
+    const DiagnoseRow *a = first, *b = second;
+    if ((a->beyond == 0) != (b->beyond == 0))
+        return a->beyond == 0 ? -1 : 1;
+    if (a->squares != b->squares && a->beyond > 0)
+        return a->squares < b->squares ? -1 : 1;
+    int singles = __builtin_popcountll(a->mutations) - __builtin_popcountll(b->mutations);
+    if (singles != 0)
+        return singles;
+    return (a->mutations > b->mutations) - (a->mutations < b->mutations);
+}
+
+/* Gives the row its group: that of a kept file that it makes too, or a new one. Takes over
+ * predicted. */
+static void keep(Work *work, int index, Image *predicted)
+{
+    DiagnoseRow *row = &work->out->rows[index];
+    int worst = 0;
+    for (int i = 0; i < work->kept_count; i++) {
+        const DiagnoseRow *other = &work->out->rows[work->kept[i].row];
+        if (same_form(&row->form, &other->form) &&
+            fit_same(&work->fit, &row->form, predicted, &work->kept[i].predicted)) {
+            row->group = other->group;
+            image_free(predicted);
+            return;
+        }
+        if (other->squares > work->out->rows[work->kept[worst].row].squares)
+            worst = i;
+    }
+    row->group = work->groups++;
+    if (work->kept_count < KEPT) {
+        work->kept[work->kept_count++] = (Kept){index, *predicted};
+        return;
+    }
+    Kept *place = &work->kept[worst];
+    if (row->squares < work->out->rows[place->row].squares) {
+        image_swap(&place->predicted, predicted);
+        place->row = index;
+    }
+    image_free(predicted);
+}
+
+/* Adds a row for a rendering, unless their file would be what it is without the mutations. */
+static Result judge(Work *work, uint64_t mutations, const Image *final, bool *visible)
+{
+    Diagnosis *out = work->out;
+    FitResult fit;
+    Image predicted;
+    *visible = false;
+    if (same_bits(final, &work->final))
+        return RESULT_OK;
+    Result result = fit_measure(&work->fit, final, &fit);
+    if (result == RESULT_OK)
+        result = fit_predict(&work->fit, final, &fit.form, &predicted);
+    if (result != RESULT_OK)
+        return result;
+    if (same_form(&fit.form, &work->none.form) &&
+        fit_same(&work->fit, &fit.form, &predicted, &work->predicted)) {
+        image_free(&predicted);
+        return RESULT_OK;
+    }
+    double share = work->none.squares > 0.0 ? 1.0 - fit.squares / work->none.squares : 0.0;
+    *visible = true;
+    out->rows[out->count] = (DiagnoseRow){.mutations = mutations,
+                                          .explains = fmax(share, 0.0),
+                                          .beyond = fit.beyond,
+                                          .form = fit.form,
+                                          .squares = fit.squares};
+    keep(work, (int)out->count++, &predicted);
+    return RESULT_OK;
+}
+
+static Result try_mutations(Work *work, uint64_t mutations, const char *label, bool *visible)
+{
+    RenderDesc desc = with_mutations(work, mutations);
+    Image final;
+    *visible = false;
+    /* The setting that it stands for is the one asked for. */
+    if (desc.mutations == 0 && memcmp(&desc, &work->desc, sizeof desc) == 0)
+        return RESULT_OK;
+    Result result = render(work, &desc, label, &final);
+    if (result != RESULT_OK)
+        return result;
+    result = judge(work, mutations, &final, visible);
+    image_free(&final);
+    return result;
+}
+
+static Result try_singles(Work *work)
+{
+    Result result = RESULT_OK;
+    for (int id = 0; id < MUTATION_COUNT && result == RESULT_OK; id++) {
+        uint64_t bit = mutation_bit((MutationId)id);
+        char context[64];
+        bool visible;
+        snprintf(context, sizeof context, "mistake %d of %d", id + 1, MUTATION_COUNT);
+        progress_context(context);
+        result = try_mutations(work, bit, mutation_info((MutationId)id)->name, &visible);
+        if (result == RESULT_OK && !visible)
+            work->out->invisible |= bit;
+    }
+    progress_context(NULL);
+    return result;
+}
+
+/* ---- pairs ----------------------------------------------------------------------------------- */
+
+static MutationId id_of(uint64_t bit)
+{
+    return (MutationId)__builtin_ctzll(bit);
+}
+
+/* The best rows, equals included, of so many files. */
+static int choose_paired(const Work *work, DiagnoseRow *sorted, uint64_t paired[PAIRED_ROWS])
+{
+    size_t count = work->out->count;
+    int chosen = 0, groups = 0, seen[PAIRED_GROUPS];
+    memcpy(sorted, work->out->rows, count * sizeof *sorted);
+    qsort(sorted, count, sizeof *sorted, compare_rows);
+    for (size_t i = 0; i < count && chosen < PAIRED_ROWS; i++) {
+        bool known = false;
+        for (int g = 0; g < groups; g++)
+            known |= seen[g] == sorted[i].group;
+        if (!known && groups == PAIRED_GROUPS)
+            break;
+        if (!known)
+            seen[groups++] = sorted[i].group;
+        paired[chosen++] = sorted[i].mutations;
+    }
+    return chosen;
+}
+
+static double explained_by(const Work *work, uint64_t bit)
+{
+    for (size_t i = 0; i < work->out->count; i++)
+        if (work->out->rows[i].mutations == bit)
+            return work->out->rows[i].explains;
+    return 0.0;
+}
+
+static Result try_pair(Work *work, uint64_t a, uint64_t b)
+{
+    double single = fmax(explained_by(work, a), explained_by(work, b));
+    bool visible;
+    if (mutation_excludes(id_of(a), id_of(b)))
+        return RESULT_OK;
+    Result result = try_mutations(work, a | b, "two of the best", &visible);
+    if (result != RESULT_OK || !visible)
+        return result;
+    /* One that adds nothing is dropped; its file may stay among those kept: it is as good as
+     * another's. */
+    DiagnoseRow *row = &work->out->rows[work->out->count - 1];
+    if (row->beyond > 0 && row->explains < single + PAIR_GAIN)
+        row->mutations = 0;
+    return RESULT_OK;
+}
+
+static void drop_rows(Diagnosis *out)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < out->count; i++)
+        if (out->rows[i].mutations)
+            out->rows[left++] = out->rows[i];
+    out->count = left;
+}
+
+/* Where no single mistake explains all. */
+static Result try_pairs(Work *work)
+{
+    DiagnoseRow *sorted = memory_array(work->out->count + 1, sizeof *sorted);
+    uint64_t paired[PAIRED_ROWS];
+    if (!sorted)
+        return RESULT_NO_MEMORY;
+    int count = choose_paired(work, sorted, paired);
+    bool exact = count > 0 && sorted[0].beyond == 0;
+    Result result = RESULT_OK;
+    free(sorted);
+    progress_context("pairs");
+    for (int i = 0; i < count && !exact; i++)
+        for (int j = i + 1; j < count && result == RESULT_OK; j++)
+            result = try_pair(work, paired[i], paired[j]);
+    progress_context(NULL);
+    return result;
+}
+
+/* ---- the verdict ----------------------------------------------------------------------------- */
+
+static bool equals(const DiagnoseRow *a, const DiagnoseRow *b)
+{
+    if (a->beyond == 0 || b->beyond == 0)
+        return a->beyond == b->beyond;
+    return a->group == b->group || (a->squares == 0.0 && b->squares == 0.0);
+}
+
+static void rank(Diagnosis *out)
+{
+    drop_rows(out);
+    qsort(out->rows, out->count, sizeof *out->rows, compare_rows);
+    for (size_t i = 0; i < out->count; i++) {
+        DiagnoseRow *row = &out->rows[i];
+        if (row->beyond == 0)
+            row->explains = 1.0;
+        row->rank = i > 0 && equals(&row[-1], row) ? row[-1].rank : (int)i + 1;
+        out->equals += row->rank == 1;
+    }
+}
+
+static void decide(Work *work)
+{
+    Diagnosis *out = work->out;
+    const FitResult *none = &work->none;
+    const DiagnoseRow *best = out->count ? &out->rows[0] : NULL;
+    uint64_t few = out->pixels / FIT_FEW;
+    if (none->beyond == 0)
+        out->reason = DIAGNOSE_QUANTISED;
+    else if (best && best->beyond == 0)
+        out->reason = DIAGNOSE_EXACT;
+    else if (none->far <= few)
+        out->reason = DIAGNOSE_TOLERATED;
+    else if (best && best->explains >= DIAGNOSE_EXPLAINS)
+        out->reason = DIAGNOSE_NEARLY;
+    else
+        out->reason = none->far_rgb <= few ? DIAGNOSE_COLORS : DIAGNOSE_NOTHING;
+    out->verdict = out->reason == DIAGNOSE_NOTHING ? DIAGNOSE_UNKNOWN
+                   : out->reason == DIAGNOSE_EXACT || out->reason == DIAGNOSE_NEARLY
+                       ? DIAGNOSE_MISTAKE
+                       : DIAGNOSE_AGREES;
+    out->form = out->verdict == DIAGNOSE_MISTAKE ? best->form : none->form;
+}
+
+/* ---- the evidence ---------------------------------------------------------------------------- */
+
+static Result render_row(Work *work, size_t row, Image *out)
+{
+    RenderDesc desc = with_mutations(work, work->out->rows[row].mutations);
+    return render(work, &desc, "evidence", out);
+}
+
+/* The best is told from the next that is not its equal, or from the reference. */
+static Result gather(Work *work)
+{
+    Diagnosis *out = work->out;
+    Image best = {0}, second = {0};
+    bool explained =
+        out->verdict != DIAGNOSE_AGREES && out->count > 0 && out->rows[0].explains > 0.0;
+    out->second = out->equals;
+    out->has_second =
+        explained && out->second < out->count && out->rows[out->second].explains > 0.0;
+    Result result = explained ? render_row(work, 0, &best) : RESULT_OK;
+    if (result == RESULT_OK && out->has_second)
+        result = render_row(work, out->second, &second);
+    if (result == RESULT_OK)
+        result = evidence_gather(&work->fit, &work->final, explained ? &best : &work->final,
+                                 out->has_second ? &second : &work->final, out);
+    image_free(&best);
+    image_free(&second);
+    return result;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static Result check(const RenderDesc *desc, const GivenImage *given)
+{
+    if (desc->mutations || (desc->method != METHOD_PEEL && desc->method != METHOD_FORWARD))
+        return result_fail(RESULT_BAD_INPUT, "diagnose: the catalogue of mistakes is of depth "
+                                             "peeling, expected --method peel or forward");
+    if (given->nonfinite == (uint64_t)given->stored.width * (uint64_t)given->stored.height)
+        return result_fail(RESULT_BAD_INPUT, "no pixel of the image is finite, expected numbers");
+    if (given->stored.width != desc->width || given->stored.height != desc->height)
+        return result_fail(RESULT_INTERNAL, "diagnose: expected an image of the size rendered");
+    return RESULT_OK;
+}
+
+static void describe(Work *work)
+{
+    GivenReading reading = {.meaning = work->out->form};
+    given_describe(work->fit.given, &reading, work->out->described, sizeof work->out->described);
+}
+
+static Result run(Work *work)
+{
+    Diagnosis *out = work->out;
+    out->rows = memory_array(ROWS, sizeof *out->rows);
+    Result result = out->rows ? RESULT_OK : RESULT_NO_MEMORY;
+    if (result == RESULT_OK)
+        result = render(work, &work->desc, "reference", &work->final);
+    if (result == RESULT_OK)
+        result = fit_reference(&work->fit, &work->final, &work->none);
+    if (result == RESULT_OK)
+        result = fit_predict(&work->fit, &work->final, &work->none.form, &work->predicted);
+    if (result == RESULT_OK)
+        result = try_singles(work);
+    if (result == RESULT_OK && work->none.beyond > 0)
+        result = try_pairs(work);
+    if (result != RESULT_OK)
+        return result;
+    out->beyond = work->none.beyond;
+    out->far = work->none.far;
+    rank(out);
+    decide(work);
+    describe(work);
+    return gather(work);
+}
+
+static void release(Work *work)
+{
+    fit_free(&work->fit);
+    image_free(&work->final);
+    image_free(&work->predicted);
+    for (int i = 0; i < work->kept_count; i++)
+        image_free(&work->kept[i].predicted);
+}
+
+Result diagnose_run(const Scene *scene, const RenderDesc *desc, const GivenImage *given,
+                    const GivenMeaning *options, Renderer ref, Diagnosis *out)
+{
+    *out = (Diagnosis){.format = given->stored.format,
+                       .pixels = (uint64_t)desc->width * (uint64_t)desc->height};
+    Result result = check(desc, given);
+    if (result != RESULT_OK)
+        return result;
+    Clock start = clock_now();
+    double cpu_ms;
+    Work work = {.scene = scene, .desc = *desc, .ref = ref, .out = out};
+    Pool *pool = pool_create(desc->threads);
+    result = pool ? fit_create(given, options, pool, &work.fit) : RESULT_NO_MEMORY;
+    if (result == RESULT_OK)
+        result = run(&work);
+    release(&work);
+    pool_destroy(pool);
+    clock_elapsed(&start, &out->time_ms, &cpu_ms);
+    if (result != RESULT_OK)
+        diagnose_free(out);
+    return result;
+}
+
+void diagnose_free(Diagnosis *diagnosis)
+{
+    free(diagnosis->rows);
+    image_free(&diagnosis->theirs);
+    image_free(&diagnosis->reference);
+    image_free(&diagnosis->best);
+    free(diagnosis->classes);
+    *diagnosis = (Diagnosis){0};
+}
