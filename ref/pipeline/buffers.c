@@ -43,18 +43,29 @@ static void clear_color(Image *image)
                (size_t)image->width * (size_t)image->height * format_pixel_bytes(image->format));
 }
 
-void gbuffer_clear(GBuffer *buffers, DepthRange range)
+void gbuffer_clear_colors(GBuffer *buffers)
 {
+    const Image *primitive = &buffers->primitive;
     clear_color(&buffers->normal);
     clear_color(&buffers->position);
     clear_color(&buffers->diffuse);
     clear_color(&buffers->material);
-    size_t pixels = (size_t)buffers->depth.width * (size_t)buffers->depth.height;
-    uint32_t far = depth_key_far(buffers->depth.format, range);
-    uint32_t *depth = buffers->depth.pixels;
+    memset(primitive->pixels, 0xff,
+           (size_t)primitive->width * (size_t)primitive->height * sizeof(uint32_t));
+}
+
+void gbuffer_clear_depth(Image *depth, DepthRange range)
+{
+    uint32_t far = depth_key_far(depth->format, range), *keys = depth->pixels;
+    size_t pixels = (size_t)depth->width * (size_t)depth->height;
     for (size_t i = 0; i < pixels; i++)
-        depth[i] = far;
-    memset(buffers->primitive.pixels, 0xff, pixels * sizeof(uint32_t));
+        keys[i] = far;
+}
+
+void gbuffer_clear(GBuffer *buffers, DepthRange range)
+{
+    gbuffer_clear_colors(buffers);
+    gbuffer_clear_depth(&buffers->depth, range);
 }
 
 /* The pixel of an image, or NULL of one that is not stored. */

@@ -24,6 +24,9 @@ Result gbuffer_create(const RenderDesc *desc, GBuffer *out);
 void gbuffer_free(GBuffer *buffers);
 /* Colours to 0, depth to the far end, primitive to UINT32_MAX. */
 void gbuffer_clear(GBuffer *buffers, DepthRange range);
+/* The same in two parts: depth alone, and the rest. */
+void gbuffer_clear_depth(Image *depth, DepthRange range);
+void gbuffer_clear_colors(GBuffer *buffers);
 
 /* Pixel (x, y) from the top left. Flushing mode. */
 void gbuffer_store(GBuffer *buffers, int x, int y, const Texel *texel);

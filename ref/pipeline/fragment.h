@@ -3,6 +3,7 @@
 #ifndef PEEL_REF_FRAGMENT_H
 #define PEEL_REF_FRAGMENT_H
 
+#include "frame/mutation.h"
 #include "frame/shading.h"
 #include "ref/pipeline/encode.h"
 #include "ref/pipeline/pass.h"
@@ -74,6 +75,24 @@ static inline bool fragment_masked(const Pass *pass, const Setup *setup, const P
     return base[3] < op_flush(material->alpha_cutoff);
 }
 
+/* The interpolated normal as the vertices' give it, each of length 1: what is left of it where the
+ * fragment shader does not normalise. */
+static inline void fragment_short_normal(const Pass *pass, const Setup *setup, float inverse_w,
+                                         int x, int y, float normal[3])
+{
+    float scale[3];
+    for (int i = 0; i < 3; i++) {
+        const float *n = setup->corner[i]->normal;
+        scale[i] = op_inversesqrt(op_max(op_dot3(n, n), SHADING_TINY));
+    }
+    for (int i = 0; i < 3; i++) {
+        float corners[3];
+        for (int k = 0; k < 3; k++)
+            corners[k] = op_mul(setup->corner[k]->normal[i], scale[k]);
+        normal[i] = fragment_varying(pass, setup, corners, inverse_w, x, y);
+    }
+}
+
 /* The surface it shows, unquantised, its normal not encoded. Flushing mode. */
 static inline void fragment_surface(const Pass *pass, const Setup *setup,
                                     const Primitive *primitive, int x, int y, Texel *out)
@@ -94,6 +113,10 @@ static inline void fragment_surface(const Pass *pass, const Setup *setup,
     out->position[3] = 1.0f;
 
     float scale = op_inversesqrt(op_max(op_dot3(normal, normal), SHADING_TINY));
+    if (pass->desc->mutations & mutation_bit(MUTATION_NORMALS_NOT_NORMALISED)) {
+        fragment_short_normal(pass, setup, inverse_w, x, y, normal);
+        scale = 1.0f;
+    }
     bool turn = pass->desc->normals == NORMALS_FACED && !setup->front;
     for (int i = 0; i < 3; i++) {
         float n = op_mul(normal[i], scale);

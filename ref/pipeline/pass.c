@@ -1,6 +1,7 @@
 #include "ref/pipeline/pass.h"
 
 #include "base/memory.h"
+#include "ref/pipeline/mutate.h"
 
 #include <stdlib.h>
 
@@ -139,6 +140,8 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, Pass *out)
     Result result = view_build(scene, desc, &out->view);
     if (result != RESULT_OK)
         return result;
+    if (desc->mutations)
+        mutate_view(scene, desc, &out->view);
     out->tile = desc->tile ? desc->tile : TILE_DEFAULT;
     uint32_t tile = (uint32_t)out->tile;
     out->tile_columns = ((uint32_t)desc->width + tile - 1) / tile;

@@ -61,7 +61,9 @@ static inline void pass_setup(const Pass *pass, const Primitive *primitive, Setu
 /* Of the lighting pass of a peel, or of the opaque surfaces. */
 static inline ShadeForm pass_shade_form(const Pass *pass, bool transparent)
 {
-    return (ShadeForm){pass->desc->shading, pass->desc->ggx, pass->desc->back_light && transparent};
+    return (ShadeForm){.model = pass->desc->shading,
+                       .ggx = pass->desc->ggx,
+                       .back_light = pass->desc->back_light && transparent};
 }
 
 /* A fragment's depth as computed (gl_FragCoord.z) and as stored (depth_key). */

@@ -1,7 +1,10 @@
 #include "ref/pipeline/pipeline.h"
 
 #include "base/clock.h"
+#include "frame/method.h"
+#include "frame/mutation.h"
 #include "ref/pipeline/methods/methods.h"
+#include "ref/pipeline/mutate.h"
 #include "ref/pipeline/pass.h"
 #include "ref/pipeline/tile.h"
 
@@ -30,7 +33,8 @@ static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trac
     Result result = pass_create(scene, desc, &pass);
     if (result != RESULT_OK)
         return result;
-    bool definition = trace || desc->ref_path == REF_PATH_DEFINITION || !methods[desc->method].tile;
+    bool definition = trace || desc->ref_path == REF_PATH_DEFINITION ||
+                      !methods[desc->method].tile || (desc->mutations & ~MUTATE_VIEW);
     out->threads = pool_threads(pass.pool);
     out->fused = pass.fused;
     snprintf(out->version, sizeof out->version, "Peel %s", PEEL_VERSION);
@@ -47,11 +51,30 @@ static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trac
     return result;
 }
 
+/* Mistakes as settings where they are settings. */
+static Result apply_mutations(const RenderDesc *desc, RenderDesc *out)
+{
+    mutation_apply(desc, out);
+    if (desc->mutations == 0)
+        return RESULT_OK;
+    if (desc->mutations >> MUTATION_COUNT)
+        return result_fail(RESULT_BAD_INPUT, "mutations %#llx: expected bits below %d",
+                           (unsigned long long)desc->mutations, (int)MUTATION_COUNT);
+    if (desc->method != METHOD_PEEL && desc->method != METHOD_FORWARD)
+        return result_fail(RESULT_BAD_INPUT,
+                           "mutations of method %s: expected method peel or forward",
+                           method_info(desc->method)->name);
+    return RESULT_OK;
+}
+
 Result pipeline_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
 {
     *out = (Frame){0};
     Clock start = clock_now();
-    Result result = render(scene, desc, trace, out);
+    RenderDesc applied;
+    Result result = apply_mutations(desc, &applied);
+    if (result == RESULT_OK)
+        result = render(scene, &applied, trace, out);
     if (result != RESULT_OK) {
         frame_free(out);
         return result;

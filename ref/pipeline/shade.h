@@ -13,6 +13,7 @@ typedef struct ShadeForm {
     ShadingModel model;
     GgxForm ggx;
     bool back_light;
+    bool lambert_whole; /* not divided by π: MUTATION_MISSING_1_OVER_PI */
 } ShadeForm;
 
 /* From fetched and decoded G-buffer values to the premultiplied source colour; false where the

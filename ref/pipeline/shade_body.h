@@ -349,6 +349,14 @@ static inline void shade_phong(ShadeBatch *batch)
     lanes_store(batch->source[3], alpha);
 }
 
+/* The Lambert term without its 1/π. */
+static inline void shade_whole_lambert(const ShadeBatch *batch, Surface *surface)
+{
+    Lanes rest = lanes_sub(lanes_all(1.0f), lanes_load(batch->material[1]));
+    for (int i = 0; i < 3; i++)
+        surface->lambert[i] = lanes_mul(lanes_load(batch->diffuse[i]), rest);
+}
+
 /* Fills batch->source. skip: leave out lights where that changes no bit; without it this is the
  * definition. Flushing mode. */
 static inline void shade_batch_skipping(const View *view, const ShadeForm *form, bool skip,
@@ -360,6 +368,8 @@ static inline void shade_batch_skipping(const View *view, const ShadeForm *form,
     }
     Surface surface;
     shade_surface(batch, &surface);
+    if (form->lambert_whole)
+        shade_whole_lambert(batch, &surface);
     Lanes sum[3] = {lanes_all(0.0f), lanes_all(0.0f), lanes_all(0.0f)};
     skip = skip && shade_may_skip(view, form, batch, &surface);
     shade_lights(view, form, &surface, skip, sum);

@@ -41,7 +41,7 @@ static inline bool shaded_fragment(const ShadedVisit *visit, const Setup *setup,
     fragment_surface(pass, setup, visit->draw.primitive, x, y, &texel);
     out->distance = op_abs(texel.position[2]);
     out->depth = depth.z;
-    if (!shade_pixel(&pass->view, &form, &texel, out->source))
+    if (!mutate_shade(pass, &form, &texel, out->source))
         return false;
     visit->counts->shaded++;
     return true;

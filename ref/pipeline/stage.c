@@ -16,7 +16,7 @@ static void light_texel(const StageVisit *visit, Texel *texel)
     const Stage *stage = visit->stage;
     ShadeForm form = pass_shade_form(stage->pass, visit->target != &stage->opaque);
     float color[4] = {0.0f, 0.0f, 0.0f, texel->diffuse[3]};
-    shade_pixel(&stage->pass->view, &form, texel, color);
+    mutate_shade(stage->pass, &form, texel, color);
     memcpy(texel->diffuse, color, sizeof color);
 }
 
@@ -87,35 +87,41 @@ static bool is_edge(const Stage *stage, int x, int y, const Texel *texel)
            differs_from(stage, x, y - 1, texel) || differs_from(stage, x, y + 1, texel);
 }
 
+/* The colour that pixel (x, y) blends, and the surface it is of; false where it is discarded. */
+static inline bool light_pixel(const Stage *stage, const ShadeForm *form, int x, int y,
+                               Texel *texel, float color[4])
+{
+    const Pass *pass = stage->pass;
+    gbuffer_load(stage->lit, x, pass->view.height - 1 - y, texel);
+    if (stage->forward) {
+        memcpy(color, texel->diffuse, 4 * sizeof *color);
+        return color[3] > stage->alpha_test;
+    }
+    fragment_decode(pass, stage_key(&stage->lit->depth, stage_pixel(pass, x, y)), x, y, texel);
+    return mutate_shade(pass, form, texel, color);
+}
+
 static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
 {
     const Pass *pass = stage->pass;
-    const GBuffer *source = stage->lit;
     bool seed = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
+    bool mutated = pass->desc->mutations != 0;
     bool edges = render_desc_edges(pass->desc);
     ShadeForm form = pass_shade_form(pass, transparent);
     PixelRect rect = pass_tile_rect(pass, tile);
     for (int y = rect.y0; y <= rect.y1; y++)
         for (int x = rect.x0; x <= rect.x1; x++) {
-            int row = pass->view.height - 1 - y;
             Texel texel;
             float color[4];
-            gbuffer_load(source, x, row, &texel);
-            if (stage->forward) {
-                memcpy(color, texel.diffuse, sizeof color);
-                if (color[3] <= SHADING_ALPHA_TEST)
-                    continue;
-            } else {
-                fragment_decode(pass, stage_key(&source->depth, stage_pixel(pass, x, y)), x, y,
-                                &texel);
-                if (!shade_pixel(&pass->view, &form, &texel, color))
-                    continue;
-            }
+            if (!light_pixel(stage, &form, x, y, &texel, color))
+                continue;
             stage->tile_counts[tile].shaded++;
             if (edges && is_edge(stage, x, y, &texel))
                 color[0] = color[1] = color[2] = 0.0f;
-            void *pixel = image_pixel(&stage->accum, x, row);
-            if (seed)
+            void *pixel = image_pixel(&stage->accum, x, pass->view.height - 1 - y);
+            if (mutated)
+                mutate_blend(pass, transparent, color, pixel);
+            else if (seed)
                 blend_opaque_seed(stage->accum.format, color, pixel);
             else
                 blend_under(stage->accum.format, color, pixel);
@@ -147,8 +153,14 @@ static void resolve_pixel(Stage *stage, int x, int row)
     format_fetch(stage->accum.format, image_pixel(&stage->accum, x, row), accum);
     format_fetch(stage->opaque.diffuse.format, image_pixel(&stage->opaque.diffuse, x, row), opaque);
     float *final = image_pixel(&stage->frame->final, x, row);
-    shade_final(&pass->view, accum, pass_background_weight(pass, accum[3], opaque[3]), final);
-    shade_display(pass->fused, final, image_pixel(&stage->frame->display, x, row));
+    uint8_t *display = image_pixel(&stage->frame->display, x, row);
+    float weight = pass_background_weight(pass, accum[3], opaque[3]);
+    if (pass->desc->mutations) {
+        mutate_resolve(pass, accum, weight, final, display);
+        return;
+    }
+    shade_final(&pass->view, accum, weight, final);
+    shade_display(pass->fused, final, display);
 }
 
 static void resolve_tile(Stage *stage, uint32_t tile)
@@ -176,6 +188,11 @@ Result stage_resolve(Stage *stage)
     PassCounts sum = stage->counts;
     for (uint32_t tile = 0; tile < stage->pass->tile_count; tile++)
         pass_counts_add(&sum, &stage->tile_counts[tile]);
+    /* A mistaken peel's counts do not add up. */
+    if (stage->pass->desc->mutations) {
+        sum.peeled = sum.fragments + sum.repeated;
+        sum.remaining = 0;
+    }
     pass_counts_report(&sum, stage->frame);
     return result;
 }
@@ -270,11 +287,17 @@ uint64_t stage_gbuffer_bytes(const Pass *pass)
     return pixel * (uint64_t)pass->view.width * (uint64_t)pass->view.height;
 }
 
-static void clear_accum(Image *accum)
+void stage_clear_accum(Stage *stage)
 {
+    static const float nothing[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    Image *accum = &stage->accum;
+    bool zero = mutate_has(stage->pass, MUTATION_DESTINATION_ALPHA_ZERO);
     for (int y = 0; y < accum->height; y++)
         for (int x = 0; x < accum->width; x++)
-            blend_clear(accum->format, image_pixel(accum, x, y));
+            if (zero)
+                format_store(accum->format, nothing, image_pixel(accum, x, y));
+            else
+                blend_clear(accum->format, image_pixel(accum, x, y));
 }
 
 static Result allocate(Stage *stage)
@@ -287,7 +310,8 @@ static Result allocate(Stage *stage)
         result = image_create(desc->width, desc->height, desc->accum, &stage->accum);
     if (result != RESULT_OK)
         return result;
-    clear_accum(&stage->accum);
+    mutate_clear(pass, &stage->opaque);
+    stage_clear_accum(stage);
     stage->fragments = memory_array(pixels, sizeof *stage->fragments);
     stage->remaining = memory_array(pixels, sizeof *stage->remaining);
     stage->winner = memory_array(pixels, sizeof *stage->winner);
@@ -307,7 +331,8 @@ Result stage_create(Pass *pass, TraceSink *trace, Frame *frame, void *method, ui
                    .trace = trace,
                    .frame = frame,
                    .method = method,
-                   .forward = pass->desc->method == METHOD_FORWARD};
+                   .forward = pass->desc->method == METHOD_FORWARD,
+                   .alpha_test = mutate_alpha_test(pass)};
     Result result = pass_reserve(pass, own + bytes);
     if (result == RESULT_OK)
         result = allocate(out);

@@ -10,6 +10,7 @@
 #define PEEL_REF_STAGE_H
 
 #include "ref/pipeline/fragment.h"
+#include "ref/pipeline/mutate.h"
 #include "ref/pipeline/pass.h"
 
 typedef struct Stage Stage;
@@ -30,6 +31,7 @@ struct Stage {
     StageTile function;      /* of the pass that runs */
     const GBuffer *lit;      /* of the lighting pass that runs */
     bool forward;            /* diffuse holds lit colours (METHOD_FORWARD) */
+    float alpha_test;        /* SHADING_ALPHA_TEST */
 };
 
 /* bytes: of the method's own buffers, which count against the limit. frame's images are allocated.
@@ -46,6 +48,8 @@ Result stage_run(Stage *stage, StageTile function);
 
 /* The opaque geometry pass, traced. */
 Result stage_opaque(Stage *stage);
+/* The accumulation to no colour and full transmittance, as stage_create leaves it. */
+void stage_clear_accum(Stage *stage);
 /* Lights source and blends it under the accumulation; transparent: as a peel's. */
 Result stage_light(Stage *stage, const GBuffer *source, bool transparent);
 /* The opaque lighting pass, resolve and display, traced as the steps after frame->peels; counts

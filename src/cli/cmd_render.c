@@ -4,6 +4,7 @@
 #include "cli/bind.h"
 #include "cli/options.h"
 #include "compare/store.h"
+#include "frame/mutation.h"
 #include "image/exr.h"
 #include "image/exr_deep.h"
 #include "image/png.h"
@@ -23,7 +24,8 @@ typedef struct RenderCommand {
 enum {
     KEY_WITH = 0x200,
     KEY_TRACE,
-    KEY_DEEP
+    KEY_DEEP,
+    KEY_MUTATE
 };
 
 static const struct argp_option command_options[] = {
@@ -32,8 +34,23 @@ static const struct argp_option command_options[] = {
      "PNG: display-transformed; EXR: linear R, G, B over the background, A = coverage", 0},
     {"trace", KEY_TRACE, "FILE", 0, "Every buffer of every step as one multi-part EXR", 0},
     {"deep", KEY_DEEP, 0, 0, "With truth and EXR: every fragment of every pixel, front to back", 0},
+    {"mutate", KEY_MUTATE, "NAME[,NAME...]", 0,
+     "With ref and method peel or forward: makes known mistakes, to see what they look like "
+     "(teaching, testing); peel diagnose --list has their names",
+     0},
     {0},
 };
+
+static error_t parse_mutation(const char *name, void *context)
+{
+    RenderDesc *desc = context;
+    MutationId id = mutation_find(name);
+    if (id == MUTATION_COUNT)
+        return options_error("--mutate %s: expected known mistakes; peel diagnose --list has them",
+                             name);
+    desc->mutations |= mutation_bit(id);
+    return 0;
+}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -57,6 +74,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_DEEP:
         command->deep = true;
         return 0;
+    case KEY_MUTATE:
+        return options_list("--mutate", argument, parse_mutation, &command->render.desc);
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;
         return 0;
@@ -113,6 +132,14 @@ static Result write_trace(const TraceStore *store, const char *path)
     return result;
 }
 
+static Result check_mutations(const RenderCommand *command)
+{
+    if (command->render.desc.mutations && command->renderer != RENDERER_REF)
+        return result_fail(RESULT_BAD_INPUT, "--mutate: expected --with ref, not %s",
+                           threeway_renderer_name(command->renderer));
+    return RESULT_OK;
+}
+
 static Result check_deep(const RenderCommand *command)
 {
     if (!command->deep)
@@ -136,7 +163,9 @@ static Result check(const RenderCommand *command)
                            command->trace);
     if (command->render.all_methods)
         return result_fail(RESULT_BAD_INPUT, "--method all: expected one of them here");
-    Result result = check_deep(command);
+    Result result = check_mutations(command);
+    if (result == RESULT_OK)
+        result = check_deep(command);
     if (result == RESULT_OK)
         result = options_check_output(command->output);
     if (result == RESULT_OK)

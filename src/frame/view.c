@@ -45,13 +45,25 @@ static bool culls_back(CullMode mode, const Material *material, bool transparent
     return false;
 }
 
+/* Normals are normalised after the product, so a power of two changes no bit of them; it keeps the
+ * matrix of a tiny or huge instance within single precision. */
+void view_normal_matrix(const Matrix *model_view, float out[9])
+{
+    double normal[9], largest = 0.0;
+    matrix_normal(model_view, normal);
+    for (int i = 0; i < 9; i++)
+        largest = fmax(largest, fabs(normal[i]));
+    int exponent = 0;
+    frexp(largest, &exponent);
+    for (int i = 0; i < 9; i++)
+        out[i] = (float)ldexp(normal[i], -exponent);
+}
+
 static Draw make_draw(const Scene *scene, uint32_t index, const Matrix *view, CullMode cull)
 {
     const Instance *instance = &scene->instances[index];
     const Material *material = &scene->materials[instance->material];
     Matrix model_view = matrix_multiply(view, &instance->world);
-    double normal[9];
-    matrix_normal(&model_view, normal);
 
     Draw draw = {.instance = index, .mesh = instance->mesh, .material = instance->material};
     draw.transparent = material->alpha_mode == ALPHA_BLEND;
@@ -59,15 +71,7 @@ static Draw make_draw(const Scene *scene, uint32_t index, const Matrix *view, Cu
     draw.masked = material->alpha_mode == ALPHA_MASK && material->base_color_texture > 0;
     draw.cull_back = culls_back(cull, material, draw.transparent);
     matrix_round(&model_view, draw.model_view);
-    /* Normals are normalised after the product, so a power of two changes no bit of them; it keeps
-     * the matrix of a tiny or huge instance within single precision. */
-    double largest = 0.0;
-    for (int i = 0; i < 9; i++)
-        largest = fmax(largest, fabs(normal[i]));
-    int exponent = 0;
-    frexp(largest, &exponent);
-    for (int i = 0; i < 9; i++)
-        draw.normal_matrix[i] = (float)ldexp(normal[i], -exponent);
+    view_normal_matrix(&model_view, draw.normal_matrix);
     return draw;
 }
 

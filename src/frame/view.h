@@ -51,6 +51,9 @@ typedef struct View {
     float ambient[3], background[3];
 } View;
 
+/* Draw.normal_matrix of a matrix that takes a mesh to view space. */
+void view_normal_matrix(const Matrix *model_view, float out[9]);
+
 /* Fails with BAD_INPUT when desc names no camera of the scene, or a size, pass limit, time or
  * accumulation format out of range. */
 Result view_build(const Scene *scene, const RenderDesc *desc, View *out);
