@@ -61,6 +61,11 @@ static RenderDesc with_mutations(const Work *work, uint64_t mutations)
     return out;
 }
 
+static FitRendering rendering_of(uint64_t mutations, const Image *final)
+{
+    return (FitRendering){final, (mutations & mutation_bit(MUTATION_SRGB_ENCODED_TWICE)) != 0};
+}
+
 static bool same_bits(const Image *a, const Image *b)
 {
     size_t pixels = (size_t)a->width * (size_t)a->height;
@@ -127,9 +132,10 @@ static Result judge(Work *work, uint64_t mutations, const Image *final, bool *vi
     *visible = false;
     if (same_bits(final, &work->final))
         return RESULT_OK;
-    Result result = fit_measure(&work->fit, final, &fit);
+    FitRendering rendering = rendering_of(mutations, final);
+    Result result = fit_measure(&work->fit, &rendering, &fit);
     if (result == RESULT_OK)
-        result = fit_predict(&work->fit, final, &fit.form, &predicted);
+        result = fit_predict(&work->fit, &rendering, &fit.form, &predicted);
     if (result != RESULT_OK)
         return result;
     if (same_form(&fit.form, &work->none.form) &&
@@ -308,30 +314,32 @@ static void decide(Work *work)
 
 /* ---- the evidence ---------------------------------------------------------------------------- */
 
-static Result render_row(Work *work, size_t row, Image *out)
+static Result render_row(Work *work, size_t row, Image *final, FitRendering *out)
 {
-    RenderDesc desc = with_mutations(work, work->out->rows[row].mutations);
-    return render(work, &desc, "evidence", out);
+    uint64_t mutations = work->out->rows[row].mutations;
+    RenderDesc desc = with_mutations(work, mutations);
+    *out = rendering_of(mutations, final);
+    return render(work, &desc, "evidence", final);
 }
 
 /* The best is told from the next that is not its equal, or from the reference. */
 static Result gather(Work *work)
 {
     Diagnosis *out = work->out;
-    Image best = {0}, second = {0};
+    Image images[2] = {{0}, {0}};
+    FitRendering reference = {&work->final, false}, best = reference, second = reference;
     bool explained =
         out->verdict != DIAGNOSE_AGREES && out->count > 0 && out->rows[0].explains > 0.0;
     out->second = out->equals;
     out->has_second =
         explained && out->second < out->count && out->rows[out->second].explains > 0.0;
-    Result result = explained ? render_row(work, 0, &best) : RESULT_OK;
+    Result result = explained ? render_row(work, 0, &images[0], &best) : RESULT_OK;
     if (result == RESULT_OK && out->has_second)
-        result = render_row(work, out->second, &second);
+        result = render_row(work, out->second, &images[1], &second);
     if (result == RESULT_OK)
-        result = evidence_gather(&work->fit, &work->final, explained ? &best : &work->final,
-                                 out->has_second ? &second : &work->final, out);
-    image_free(&best);
-    image_free(&second);
+        result = evidence_gather(&work->fit, &reference, &best, &second, out);
+    image_free(&images[0]);
+    image_free(&images[1]);
     return result;
 }
 
@@ -362,10 +370,11 @@ static Result run(Work *work)
     Result result = out->rows ? RESULT_OK : RESULT_NO_MEMORY;
     if (result == RESULT_OK)
         result = render(work, &work->desc, "reference", &work->final);
+    FitRendering reference = {&work->final, false};
     if (result == RESULT_OK)
-        result = fit_reference(&work->fit, &work->final, &work->none);
+        result = fit_reference(&work->fit, &reference, &work->none);
     if (result == RESULT_OK)
-        result = fit_predict(&work->fit, &work->final, &work->none.form, &work->predicted);
+        result = fit_predict(&work->fit, &reference, &work->none.form, &work->predicted);
     if (result == RESULT_OK)
         result = try_singles(work);
     if (result == RESULT_OK && work->none.beyond > 0)

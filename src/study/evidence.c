@@ -91,8 +91,8 @@ static void compare_pixels(const Fit *fit, const Image *second, Diagnosis *out)
         }
 }
 
-Result evidence_gather(Fit *fit, const Image *reference, const Image *best, const Image *second,
-                       Diagnosis *out)
+Result evidence_gather(Fit *fit, const FitRendering *reference, const FitRendering *best,
+                       const FitRendering *second, Diagnosis *out)
 {
     Image other = {0};
     out->classes = memory_array(out->pixels, 1);

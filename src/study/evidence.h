@@ -7,9 +7,9 @@
 #include "study/fit.h"
 
 /* Fills theirs, reference, best, classes, class_counts and pixel of *out, whose form and pixels are
- * known. reference, best, second: final images; the pixel is where best and second differ most in
+ * known. The pixel is where best and second differ most in
  * how far they are from theirs, best nearer. NO_MEMORY leaves what diagnose_free frees. */
-Result evidence_gather(Fit *fit, const Image *reference, const Image *best, const Image *second,
-                       Diagnosis *out);
+Result evidence_gather(Fit *fit, const FitRendering *reference, const FitRendering *best,
+                       const FitRendering *second, Diagnosis *out);
 
 #endif

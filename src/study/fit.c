@@ -1,6 +1,7 @@
 #include "study/fit.h"
 
 #include "base/memory.h"
+#include "frame/shading.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,9 +51,23 @@ static void list_forms(Fit *fit, const GivenMeaning *options)
 typedef struct Encoding {
     PixelFormat format;
     GivenEncoding encoding;
+    bool twice;
     const Image *final;
     Image *out;
 } Encoding;
+
+/* A final colour that was encoded too much by the power of the seed's transform is in a linear file
+ * as it is; in an encoded one its own encoding comes a second time. */
+static double encode(const Encoding *form, double color)
+{
+    if (!form->twice || form->encoding == GIVEN_LINEAR)
+        return given_stored_value(form->format, form->encoding, color);
+    double linear = pow(fmax(color, 0.0), 1.0 / (double)SHADING_DISPLAY_POWER);
+    double once = given_encode(form->encoding, linear);
+    double twice = form->encoding == GIVEN_SEED ? pow(once, (double)SHADING_DISPLAY_POWER)
+                                                : given_encode(form->encoding, once);
+    return given_stored_value(form->format, GIVEN_LINEAR, twice);
+}
 
 static Result encode_row(void *context, uint32_t row, int worker)
 {
@@ -62,17 +77,19 @@ static Result encode_row(void *context, uint32_t row, int worker)
     (void)worker;
     for (int x = 0; x < encoding->final->width; x++, in += 4, out += 4) {
         for (int c = 0; c < 3; c++)
-            out[c] = (float)given_stored_value(encoding->format, encoding->encoding, (double)in[c]);
+            out[c] = (float)encode(encoding, (double)in[c]);
         out[3] = in[3];
     }
     return RESULT_OK;
 }
 
 /* Alpha stays coverage. */
-static Result encode_image(Fit *fit, const Image *final, GivenEncoding encoding, Image *out)
+static Result encode_image(Fit *fit, const FitRendering *rendering, GivenEncoding encoding,
+                           Image *out)
 {
-    Encoding all = {fit->given->stored.format, encoding, final, out};
-    return pool_run(fit->pool, (uint32_t) final->height, encode_row, &all);
+    Encoding all = {fit->given->stored.format, encoding, rendering->encoded_twice, rendering->final,
+                    out};
+    return pool_run(fit->pool, (uint32_t)out->height, encode_row, &all);
 }
 
 int fit_channels(const GivenMeaning *form)
@@ -185,8 +202,9 @@ static Result measure_form(Fit *fit, const GivenMeaning *form, FitResult *out)
     return result;
 }
 
-static Result check_size(const Fit *fit, const Image *final)
+static Result check_size(const Fit *fit, const FitRendering *rendering)
 {
+    const Image *final = rendering->final;
     if (final->format == FORMAT_RGBA32F && final->width == fit->theirs.width &&
         final->height == fit->theirs.height)
         return RESULT_OK;
@@ -199,15 +217,15 @@ static bool better(const FitResult *a, const FitResult *b)
     return a->squares < b->squares || (a->squares == b->squares && a->beyond < b->beyond);
 }
 
-Result fit_measure(Fit *fit, const Image *final, FitResult *out)
+Result fit_measure(Fit *fit, const FitRendering *rendering, FitResult *out)
 {
     FitResult usual = {0}, best = {0};
-    Result result = check_size(fit, final);
+    Result result = check_size(fit, rendering);
     for (int i = 0; i < fit->form_count && result == RESULT_OK; i++) {
         const GivenMeaning *form = &fit->forms[i];
         FitResult one;
         if (i == 0 || form->encoding != fit->forms[i - 1].encoding)
-            result = encode_image(fit, final, form->encoding, &fit->encoded);
+            result = encode_image(fit, rendering, form->encoding, &fit->encoded);
         if (result == RESULT_OK)
             result = measure_form(fit, form, &one);
         if (result != RESULT_OK)
@@ -241,17 +259,17 @@ static double median(float *residuals, size_t count)
 }
 
 /* The form is chosen with a provisional cap, so that a few large differences do not decide. */
-Result fit_reference(Fit *fit, const Image *final, FitResult *out)
+Result fit_reference(Fit *fit, const FitRendering *rendering, FitResult *out)
 {
-    size_t pixels = (size_t) final->width * (size_t) final->height;
+    size_t pixels = (size_t)fit->theirs.width * (size_t)fit->theirs.height;
     fit->tolerant = false;
     fit->cap = 1.0;
-    Result result = fit_measure(fit, final, out);
+    Result result = fit_measure(fit, rendering, out);
     if (result != RESULT_OK)
         return result;
     fit->tolerant = out->far > pixels / FIT_FEW;
     GivenMeaning form = out->form;
-    result = encode_image(fit, final, form.encoding, &fit->encoded);
+    result = encode_image(fit, rendering, form.encoding, &fit->encoded);
     if (result == RESULT_OK)
         result = measure_form(fit, &form, out);
     if (result != RESULT_OK)
@@ -259,19 +277,19 @@ Result fit_reference(Fit *fit, const Image *final, FitResult *out)
     double scale = median(fit->residuals, pixels);
     if (scale > 0.0 && isfinite(scale))
         fit->cap = CAP * scale;
-    return fit_measure(fit, final, out);
+    return fit_measure(fit, rendering, out);
 }
 
 /* ---- predictions ----------------------------------------------------------------------------- */
 
-Result fit_predict(Fit *fit, const Image *final, const GivenMeaning *form, Image *out)
+Result fit_predict(Fit *fit, const FitRendering *rendering, const GivenMeaning *form, Image *out)
 {
     *out = (Image){0};
-    Result result = check_size(fit, final);
+    Result result = check_size(fit, rendering);
     if (result == RESULT_OK)
-        result = image_create(final->width, final->height, FORMAT_RGBA32F, out);
+        result = image_create(fit->theirs.width, fit->theirs.height, FORMAT_RGBA32F, out);
     if (result == RESULT_OK)
-        result = encode_image(fit, final, form->encoding, out);
+        result = encode_image(fit, rendering, form->encoding, out);
     float *pixel = out->pixels;
     for (size_t i = 0; result == RESULT_OK && i < (size_t)out->width * (size_t)out->height; i++)
         pixel[4 * i + 3] =

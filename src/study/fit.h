@@ -37,6 +37,13 @@ typedef struct Fit {
     double cap;       /* a pixel's residual counts up to this */
 } Fit;
 
+/* A rendering. encoded_twice: of MUTATION_SRGB_ENCODED_TWICE, which a linear image shows, and an
+ * encoded one shows in another way: its colours are encoded once more than their form says. */
+typedef struct FitRendering {
+    const Image *final; /* of their size */
+    bool encoded_twice;
+} FitRendering;
+
 /* One rendering against their image. */
 typedef struct FitResult {
     GivenMeaning form; /* in which it fits best; not the usual one unless that is twice as bad */
@@ -51,17 +58,17 @@ typedef struct FitResult {
 Result fit_create(const GivenImage *given, const GivenMeaning *options, Pool *pool, Fit *out);
 void fit_free(Fit *fit);
 
-/* Measures the unmutated reference, a final image of their size, and decides what counts from now
+/* Measures the unmutated reference and decides what counts from now
  * on: residuals beyond the tolerance where more pixels than one of FIT_FEW have one, else those
  * beyond quantisation; up to a cap of four times their median. */
-Result fit_reference(Fit *fit, const Image *final, FitResult *out);
+Result fit_reference(Fit *fit, const FitRendering *rendering, FitResult *out);
 
 /* Measures another rendering. */
-Result fit_measure(Fit *fit, const Image *final, FitResult *out);
+Result fit_measure(Fit *fit, const FitRendering *rendering, FitResult *out);
 
 /* What their file would hold, but for the order of rows, which is from top to bottom, and before
  * integers are rounded: *out FORMAT_RGBA32F, the caller frees. */
-Result fit_predict(Fit *fit, const Image *final, const GivenMeaning *form, Image *out);
+Result fit_predict(Fit *fit, const FitRendering *rendering, const GivenMeaning *form, Image *out);
 
 /* Their stored values at x, y from the top left. */
 const float *fit_theirs(const Fit *fit, const GivenMeaning *form, int x, int y);
