@@ -295,6 +295,9 @@ static void decide(Work *work)
     const FitResult *none = &work->none;
     const DiagnoseRow *best = out->count ? &out->rows[0] : NULL;
     uint64_t few = out->pixels / FIT_FEW;
+    /* Where the reference fits, what fits as well cannot be told from it. */
+    for (size_t i = 0; none->beyond == 0 && i < out->count && out->rows[i].beyond == 0; i++)
+        out->invisible |= out->rows[i].mutations;
     if (none->beyond == 0)
         out->reason = DIAGNOSE_QUANTISED;
     else if (best && best->beyond == 0)
