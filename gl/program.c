@@ -6,7 +6,6 @@
 
 /* Nine digits give back the same float. */
 #define PRELUDE_FORMAT                                                                             \
-    "#version 450 core\n"                                                                          \
     "#define TINY %.9g\n"                                                                          \
     "#define ALPHA_TEST %.9g\n"                                                                    \
     "#define ROUGHNESS_MIN %.9g\n"                                                                 \
@@ -25,13 +24,13 @@
 static Result compile(const char *name, GLenum stage, const char *prelude, const char *defines,
                       const char *const *sources, int count, GLuint *out)
 {
-    const char *parts[2 + 2 * PROGRAM_PARTS] = {prelude, defines};
+    const char *parts[3 + 2 * PROGRAM_PARTS] = {"#version 450 core\n", prelude, defines};
     for (int i = 0; i < count; i++) {
-        parts[2 + 2 * i] = "#line 1\n";
-        parts[3 + 2 * i] = sources[i];
+        parts[3 + 2 * i] = "#line 1\n";
+        parts[4 + 2 * i] = sources[i];
     }
     GLuint shader = gl.CreateShader(stage);
-    gl.ShaderSource(shader, 2 + 2 * count, parts, NULL);
+    gl.ShaderSource(shader, 3 + 2 * count, parts, NULL);
     gl.CompileShader(shader);
     GLint done = GL_FALSE;
     gl.GetShaderiv(shader, GL_COMPILE_STATUS, &done);
@@ -66,18 +65,23 @@ static Result link(const char *name, GLuint vertex, GLuint fragment, GLuint *out
     return RESULT_OK;
 }
 
-Result program_build(const char *name, const char *defines, const char *vertex,
-                     const char *const *fragment, int parts, GLuint *out)
+void program_constants(char out[PROGRAM_CONSTANTS])
 {
-    *out = 0;
-    char prelude[768];
-    snprintf(prelude, sizeof prelude, PRELUDE_FORMAT, (double)SHADING_TINY,
+    snprintf(out, PROGRAM_CONSTANTS, PRELUDE_FORMAT, (double)SHADING_TINY,
              (double)SHADING_ALPHA_TEST, (double)SHADING_ROUGHNESS_MIN,
              (double)SHADING_DISTANCE2_MIN, (double)SHADING_SPECULAR_BIAS, (double)SHADING_EDGE_DOT,
              (double)SHADING_EDGE_DEPTH, (double)SHADING_PI, (double)SHADING_PHONG_LIGHT_X,
              (double)SHADING_PHONG_LIGHT_Y, (double)SHADING_PHONG_LIGHT_Z,
              (double)SHADING_PHONG_AMBIENT_R, (double)SHADING_PHONG_AMBIENT_GB,
              (double)SHADING_DISPLAY_POWER);
+}
+
+Result program_build(const char *name, const char *defines, const char *vertex,
+                     const char *const *fragment, int parts, GLuint *out)
+{
+    *out = 0;
+    char prelude[PROGRAM_CONSTANTS];
+    program_constants(prelude);
     GLuint stages[2] = {0, 0};
     Result result = compile(name, GL_VERTEX_SHADER, prelude, defines, &vertex, 1, &stages[0]);
     if (result == RESULT_OK)

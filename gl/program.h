@@ -5,7 +5,8 @@
 #include "api.h"
 
 enum {
-    PROGRAM_PARTS = 8
+    PROGRAM_PARTS = 8,
+    PROGRAM_CONSTANTS = 768
 };
 
 /* Embedded from shaders/; static, NUL-terminated. */
@@ -36,6 +37,9 @@ extern const char shader_fuses_vert[];
 extern const char shader_fuses_frag[];
 extern const char shader_experiment_vert[];
 extern const char shader_experiment_frag[];
+
+/* The constants of frame/shading.h as lines of "#define ...\n". */
+void program_constants(char out[PROGRAM_CONSTANTS]);
 
 /* Compiles and links the vertex source and the fragment sources, at most PROGRAM_PARTS, each stage
  * behind "#version 450 core", the constants of frame/shading.h and `defines` (lines of "#define

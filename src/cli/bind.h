@@ -16,6 +16,7 @@ int bind_find_renderer(const char *name);
 /* argv[0] is "peel <command>"; returns the exit code. */
 int cmd_bench(int argc, char **argv);
 int cmd_render(int argc, char **argv);
+int cmd_check(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 int cmd_diagnose(int argc, char **argv);
 int cmd_driver(int argc, char **argv);

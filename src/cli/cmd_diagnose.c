@@ -6,7 +6,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct DiagnoseCommand {
     RenderOptions render;
@@ -73,8 +72,7 @@ static const struct argp command_argp = {
 static Result check(const DiagnoseCommand *command)
 {
     if (!command->image)
-        return result_fail(RESULT_BAD_INPUT, "diagnose %s: no image given; expected a PNG or EXR",
-                           command->render.scene_path);
+        return result_fail(RESULT_BAD_INPUT, "diagnose: expected a scene and an image, PNG or EXR");
     if (command->render.all_methods)
         return result_fail(RESULT_BAD_INPUT, "--method all: expected one of them here");
     Result result = command->report ? options_open_directory(command->report) : RESULT_OK;
@@ -129,26 +127,25 @@ static int run(DiagnoseCommand *command)
     return code;
 }
 
-/* --list needs no scene, which the parser of the rendering options would ask for. */
-static bool asks_for_list(int argc, char **argv)
+static int list(const DiagnoseCommand *command)
 {
-    return argc == 2 && strcmp(argv[1], "--list") == 0;
+    if (command->render.scene_path || command->image)
+        return options_fail(
+            result_fail(RESULT_BAD_INPUT, "diagnose --list: expected no scene and no image"));
+    report_diagnose_list(stdout);
+    return EXIT_AGREE;
 }
 
 int cmd_diagnose(int argc, char **argv)
 {
     DiagnoseCommand command = {.render = options_default()};
-    if (asks_for_list(argc, argv)) {
-        report_diagnose_list(stdout);
-        return EXIT_AGREE;
-    }
+    command.render.scene_optional = true; /* for --list */
     command.line = options_command_line(argc, argv);
     int code = options_parse(&command_argp, argc, argv, &command);
     if (code)
         code = code == OPTIONS_HELPED ? EXIT_AGREE : code;
     else if (command.list)
-        code =
-            options_fail(result_fail(RESULT_BAD_INPUT, "diagnose --list: expected nothing else"));
+        code = list(&command);
     else if (!command.line)
         code = options_fail(result_fail(RESULT_NO_MEMORY, "out of memory"));
     else

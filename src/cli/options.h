@@ -11,6 +11,7 @@
 enum {
     EXIT_AGREE = 0,
     EXIT_DIFFER = 2,
+    EXIT_SIZES = 3,
     EXIT_BAD_INPUT = 4
 };
 
@@ -22,6 +23,7 @@ typedef enum FmaChoice {
 
 typedef struct RenderOptions {
     const char *scene_path; /* the argument SCENE; NULL until it is parsed */
+    bool scene_optional;    /* of the command: whether there may be none */
     RenderDesc desc;
     const char *camera; /* name or index; NULL: the first */
     bool has_opacity, has_background;
@@ -69,6 +71,9 @@ enum {
     OPTIONS_THREADS_MAX = 256
 };
 error_t options_fma(const char *text, FmaChoice *out);
+/* Whether text is a value of --depth, which it then sets: for a command whose --depth takes files,
+ * too. */
+bool options_depth_format(const char *text, RenderOptions *options);
 error_t options_count(const char *name, const char *text, int low, int high, int *out);
 error_t options_memory(const char *text, size_t *out);
 

@@ -9,11 +9,7 @@
 /* A child parser; its input is a GivenMeaning, which is DETECT where no option says. */
 extern const struct argp options_given_argp;
 
-enum {
-    EXIT_SIZE = 3
-};
-
-/* EXIT_SIZE and one line on stderr when the image has another size than is rendered; else 0. */
+/* EXIT_SIZES and one line on stderr when the image has another size than is rendered; else 0. */
 int options_given_size(const char *path, const GivenImage *given, int width, int height);
 
 #endif

@@ -325,6 +325,19 @@ static error_t parse_named(int key, const char *argument, RenderOptions *options
     return ARGP_ERR_UNKNOWN;
 }
 
+bool options_depth_format(const char *text, RenderOptions *options)
+{
+    const NamedOption *named = named_options;
+    while (named->key != KEY_DEPTH)
+        named++;
+    for (int i = 0; i < 6 && named->names[i]; i++)
+        if (strcmp(text, named->names[i]) == 0) {
+            options->depth = i;
+            return true;
+        }
+    return false;
+}
+
 static error_t parse_draw_order(const char *text, RenderDesc *desc)
 {
     static const char shuffle[] = "shuffle=";
@@ -406,7 +419,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         options->scene_path = argument;
         return 0;
     case ARGP_KEY_SUCCESS:
-        if (!options->scene_path)
+        if (!options->scene_path && !options->scene_optional)
             return options_error("no scene given; expected a .gltf or .glb file or the name of a "
                                  "built-in scene");
         return 0;

@@ -88,7 +88,7 @@ Result given_load(const char *path, GivenImage *out)
     Result result = file_head(path, magic, sizeof magic, &count);
     if (result != RESULT_OK)
         return result;
-    if (count == 4 && memcmp(magic, "\x76\x2f\x31\x01", 4) == 0)
+    if (count == 4 && memcmp(magic, EXR_MAGIC, 4) == 0)
         result = load_exr(path, out);
     else if (count == 4 && memcmp(magic, "\x89PNG", 4) == 0)
         result = load_png(path, out);

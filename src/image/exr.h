@@ -11,6 +11,8 @@
 
 #include <stdbool.h>
 
+#define EXR_MAGIC "\x76\x2f\x31\x01" /* the first four bytes of a file */
+
 typedef struct ExrPart {
     const char *name; /* unique in the file; NULL for a single unnamed part */
     PixelFormat format;
@@ -33,6 +35,8 @@ Result exr_write(const Image *image, const char *path);
  * channel. part: index. The caller frees *out; name receives the part's name ("" if none). */
 Result exr_read(const char *path, int part, Image *out, char name[64]);
 Result exr_part_count(const char *path, int *count);
+/* The part's name, "" where it has none. */
+Result exr_part_name(const char *path, int part, char name[64]);
 /* Whether a part has a channel of this name. */
 Result exr_has_channel(const char *path, int part, const char *channel, bool *has);
 

@@ -215,6 +215,25 @@ Result exr_part_count(const char *path, int *count)
     return result;
 }
 
+static void copy_name(const ExrReader *reader, int part, char name[64])
+{
+    const char *text;
+    name[0] = 0;
+    if (exr_get_name(reader->context, part, &text) == EXR_ERR_SUCCESS && text)
+        snprintf(name, 64, "%s", text);
+}
+
+Result exr_part_name(const char *path, int part, char name[64])
+{
+    ExrReader reader;
+    Result result = exr_reader_open(path, &reader);
+    if (result != RESULT_OK)
+        return result;
+    copy_name(&reader, part, name);
+    exr_reader_close(&reader);
+    return RESULT_OK;
+}
+
 Result exr_has_channel(const char *path, int part, const char *channel, bool *has)
 {
     ExrReader reader;
@@ -241,7 +260,6 @@ Result exr_read(const char *path, int part, Image *out, char name[64])
     if (result != RESULT_OK)
         return result;
     int count = 0;
-    const char *text;
     exr_get_count(reader.context, &count);
     if (part < 0 || part >= count)
         result =
@@ -250,8 +268,8 @@ Result exr_read(const char *path, int part, Image *out, char name[64])
         result = read_part(&reader, part, out);
     if (result != RESULT_OK)
         image_free(out);
-    else if (exr_get_name(reader.context, part, &text) == EXR_ERR_SUCCESS && text)
-        snprintf(name, 64, "%s", text);
+    else
+        copy_name(&reader, part, name);
     exr_reader_close(&reader);
     return result;
 }

@@ -1,0 +1,114 @@
+#include "compare/trace_file.h"
+
+#include "base/file.h"
+#include "frame/method.h"
+#include "image/dump.h"
+#include "image/exr.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool begins(const char *text, const char *with)
+{
+    return strncmp(text, with, strlen(with)) == 0;
+}
+
+int trace_name_peel(const char *name)
+{
+    if (!begins(name, "peel.") || name[5] < '0' || name[5] > '9')
+        return -1;
+    char *end;
+    long peel = strtol(name + 5, &end, 10);
+    return *end == '.' && peel < PASSES_MAX ? (int)peel : -1;
+}
+
+int trace_name_step(const char *name)
+{
+    int peel = trace_name_peel(name);
+    if (peel >= 0)
+        return peel + 1;
+    return begins(name, "opaque.") ? 0 : INT_MAX;
+}
+
+static bool is_buffer_name(const char *name)
+{
+    if (trace_name_step(name) != INT_MAX || strcmp(name, "accum") == 0 ||
+        strcmp(name, "display") == 0)
+        return true;
+    for (int i = 0; i < METHOD_COUNT; i++) {
+        const char *method = method_info((MethodId)i)->name;
+        if (begins(name, method) && name[strlen(method)] == '.')
+            return true;
+    }
+    return false;
+}
+
+static Result is_dump(const char *path, bool *is)
+{
+    char head[sizeof DUMP_MAGIC - 1];
+    size_t count;
+    Result result = file_head(path, head, sizeof head, &count);
+    *is = result == RESULT_OK && count == sizeof head && memcmp(head, DUMP_MAGIC, count) == 0;
+    return result;
+}
+
+static Result is_exr(const char *path, bool *is)
+{
+    char head[4];
+    size_t count;
+    Result result = file_head(path, head, sizeof head, &count);
+    *is = result == RESULT_OK && count == 4 && memcmp(head, EXR_MAGIC, 4) == 0;
+    return result;
+}
+
+Result trace_file_is(const char *path, bool *is)
+{
+    bool exr;
+    int parts;
+    Result result = is_dump(path, is);
+    if (result != RESULT_OK || *is)
+        return result;
+    result = is_exr(path, &exr);
+    if (result != RESULT_OK || !exr)
+        return result;
+    result = exr_part_count(path, &parts);
+    for (int i = 0; i < parts && result == RESULT_OK && !*is; i++) {
+        char name[64];
+        result = exr_part_name(path, i, name);
+        *is = result == RESULT_OK && is_buffer_name(name);
+    }
+    return result;
+}
+
+static Result put(void *sink, const char *name, const Image *image)
+{
+    return trace_put(sink, name, trace_name_step(name), image->format, image->width, image->height,
+                     image->pixels);
+}
+
+static Result read_exr(const char *path, TraceSink *sink)
+{
+    int parts;
+    Result result = exr_part_count(path, &parts);
+    for (int i = 0; i < parts && result == RESULT_OK; i++) {
+        char name[64];
+        Image image;
+        result = exr_read(path, i, &image, name);
+        if (result != RESULT_OK)
+            break;
+        if (is_buffer_name(name) && strlen(name) < DUMP_NAME)
+            result = put(sink, name, &image);
+        image_free(&image);
+    }
+    return result;
+}
+
+Result trace_file_read(const char *path, TraceSink *sink)
+{
+    bool dump;
+    Result result = is_dump(path, &dump);
+    if (result != RESULT_OK)
+        return result;
+    return dump ? dump_read(path, put, sink) : read_exr(path, sink);
+}

@@ -1,0 +1,209 @@
+#include "study/check.h"
+
+#include "base/memory.h"
+#include "base/progress.h"
+#include "compare/store.h"
+#include "compare/trace_file.h"
+#include "frame/method.h"
+#include "study/check_steps.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Where the method's own tolerance is 0, because it is not exact: here the same method is meant. */
+#define TOLERANCE_DEFAULT 1e-4
+
+static Result size_failure(const CheckRun *run, const char *path, const char *buffer, int width,
+                           int height)
+{
+    *run->sizes = CHECK_SIZES_DIFFER;
+    return result_fail(RESULT_BAD_INPUT,
+                       "%s:%s%s %dx%d pixels, the reference has %dx%d; expected the same size "
+                       "(--size)",
+                       path, *buffer ? " " : "", buffer, width, height, run->desc.width,
+                       run->desc.height);
+}
+
+/* ---- what they gave, before anything is rendered --------------------------------------------- */
+
+static Result load_image(const CheckRun *run, const char *path, GivenImage *out)
+{
+    Result result = given_load(path, out);
+    if (result != RESULT_OK)
+        return result;
+    if (out->stored.width == run->desc.width && out->stored.height == run->desc.height)
+        return RESULT_OK;
+    result = size_failure(run, path, "", out->stored.width, out->stored.height);
+    given_free(out);
+    return result;
+}
+
+static Result load_trace(CheckRun *run, const char *path)
+{
+    Result result = trace_file_read(path, store_sink(run->theirs));
+    for (int i = 0; i < store_count(run->theirs) && result == RESULT_OK; i++) {
+        const StoredBuffer *buffer = store_buffer(run->theirs, i);
+        if (buffer->width != run->desc.width || buffer->height != run->desc.height)
+            result = size_failure(run, path, buffer->name, buffer->width, buffer->height);
+    }
+    return result;
+}
+
+static Result load_depth(const CheckRun *run, const char *path, Image *out)
+{
+    bool exr;
+    char name[64];
+    Result result = check_is_exr(path, &exr);
+    if (result != RESULT_OK)
+        return result;
+    if (exr) {
+        result = exr_read(path, 0, out, name);
+    } else {
+        GivenImage given; /* of grey, each channel has the value */
+        result = given_load(path, &given);
+        *out = given.stored;
+    }
+    if (result != RESULT_OK)
+        return result;
+    if (out->width != run->desc.width || out->height != run->desc.height) {
+        result = size_failure(run, path, "", out->width, out->height);
+        image_free(out);
+    }
+    return result;
+}
+
+static Result load_files(CheckRun *run)
+{
+    const CheckDesc *check = run->check;
+    run->files = memory_array(check->file_count, sizeof *run->files);
+    Result result = run->files ? RESULT_OK : RESULT_NO_MEMORY;
+    for (size_t i = 0; i < check->file_count && result == RESULT_OK; i++) {
+        const CheckFile *file = &check->files[i];
+        result = file->depth ? load_depth(run, file->path, &run->files[i].depth)
+                             : load_image(run, file->path, &run->files[i].image);
+    }
+    return result;
+}
+
+static Result load(CheckRun *run)
+{
+    bool trace = false;
+    Result result = store_create(0, &run->theirs);
+    if (result == RESULT_OK && run->check->theirs)
+        result = trace_file_is(run->check->theirs, &trace);
+    if (result == RESULT_OK && run->check->theirs)
+        result = trace ? load_trace(run, run->check->theirs)
+                       : load_image(run, run->check->theirs, &run->image);
+    return result == RESULT_OK ? load_files(run) : result;
+}
+
+/* ---- the reference --------------------------------------------------------------------------- */
+
+static Result render(CheckRun *run, const Scene *scene, Renderer ref, Renderer truth)
+{
+    RenderDesc desc = run->desc;
+    bool traced = store_count(run->theirs) > 0 || run->check->file_count > 0;
+    Result result = traced ? store_create(0, &run->reference) : RESULT_OK;
+    if (result != RESULT_OK)
+        return result;
+    desc.bound = false;
+    progress_begin("ref", 0);
+    result = ref(scene, &desc, traced ? store_sink(run->reference) : NULL, &run->report->frame);
+    progress_end();
+    if (result != RESULT_OK || !run->desc.bound)
+        return result;
+    progress_begin("truth, with bounds", 0);
+    result = truth(scene, &run->desc, NULL, &run->truth);
+    progress_end();
+    return result;
+}
+
+/* ---- the verdict ----------------------------------------------------------------------------- */
+
+/* By their order, which for equal ones stays: few steps are out of place. */
+static void sort_steps(CheckStep *steps, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        CheckStep step = steps[i];
+        size_t at = i;
+        for (; at > 0 && steps[at - 1].order > step.order; at--)
+            steps[at] = steps[at - 1];
+        steps[at] = step;
+    }
+}
+
+static void conclude(CheckReport *report)
+{
+    bool any = false;
+    sort_steps(report->steps, report->step_count);
+    report->first = -1;
+    for (size_t i = report->step_count; i-- > 0;) {
+        any |= report->steps[i].judged;
+        if (!report->steps[i].agree)
+            report->first = (int)i;
+    }
+    report->agree = report->first < 0 && any;
+}
+
+static void free_run(CheckRun *run)
+{
+    for (size_t i = 0; run->files && i < run->check->file_count; i++) {
+        given_free(&run->files[i].image);
+        image_free(&run->files[i].depth);
+    }
+    free(run->files);
+    given_free(&run->image);
+    frame_free(&run->truth);
+    store_destroy(run->theirs);
+    store_destroy(run->reference);
+}
+
+Result check_run(const Scene *scene, const RenderDesc *desc, Renderer ref, Renderer truth,
+                 const CheckDesc *check, CheckReport *out, CheckSizes *sizes)
+{
+    double method = method_info(desc->method)->tolerance;
+    *out = (CheckReport){.scene_name = scene->name,
+                         .scene_path = check->scene_path,
+                         .theirs = check->theirs,
+                         .desc = *desc,
+                         .tolerance = check->tolerance,
+                         .first = -1};
+    if (out->tolerance < 0.0)
+        out->tolerance = method > 0.0 ? method : TOLERANCE_DEFAULT;
+    *sizes = CHECK_SIZES_EQUAL;
+    CheckRun run = {.desc = *desc, .check = check, .report = out, .sizes = sizes};
+    Result result = load(&run);
+    if (result == RESULT_OK)
+        result = render(&run, scene, ref, truth);
+    if (result == RESULT_OK)
+        result = check_steps(&run);
+    if (result == RESULT_OK)
+        conclude(out);
+    else
+        check_free(out);
+    free_run(&run);
+    return result;
+}
+
+void check_free(CheckReport *report)
+{
+    frame_free(&report->frame);
+    image_free(&report->theirs_image);
+    free(report->steps);
+    *report = (CheckReport){.first = -1};
+}
+
+void check_describe_worst(const CheckStep *step, char *text, size_t size)
+{
+    const JudgeWorst *worst = &step->figures.worst;
+    const char *unit = format_info(step->format)->kind == KIND_UNORM ? "steps" : "ULP";
+    char apart[48] = "";
+    if (worst->ulp >= 0.0)
+        snprintf(apart, sizeof apart, ", %.10g %s apart", worst->ulp, unit);
+    const char *channel = format_info(step->format)->channels == 1 ? "" : "RGBA";
+    snprintf(text, size, "pixel (%d, %d)%s%.1s: theirs %.9g (%a), reference %.9g (%a)%s", worst->x,
+             worst->y, *channel ? ", " : "", *channel ? channel + worst->channel : "",
+             worst->theirs, worst->theirs, worst->reference, worst->reference, apart);
+}
