@@ -108,19 +108,27 @@ static float decode(const Pass *pass, float c)
     return op_min(op_pow(pass->fused, op_max(c, 0.0f), MUTATE_DECODE_POWER), FLT_MAX);
 }
 
+/* Whether nothing was drawn there, and lighting it adds nothing: colours times an alpha of 0. */
+static bool adds_nothing(const Pass *pass, const Texel *texel)
+{
+    return texel->diffuse[3] == 0.0f && texel->material[3] == 0.0f &&
+           !mutate_has(pass, MUTATION_NOT_PREMULTIPLIED) &&
+           !mutate_has(pass, MUTATION_BLEND_FACTORS_SWAPPED);
+}
+
 bool mutate_source(const Pass *pass, const ShadeForm *form, const Texel *texel, float source[4])
 {
     Texel lit = *texel;
     ShadeForm mistaken = *form;
     float alpha = texel->diffuse[3], color[4];
-    if (alpha <= mutate_alpha_test(pass))
+    if (alpha <= mutate_alpha_test(pass) || adds_nothing(pass, texel))
         return false;
     mistaken.lambert_whole = mutate_has(pass, MUTATION_MISSING_1_OVER_PI);
     if (mutate_has(pass, MUTATION_ROUGHNESS_SQUARED_TWICE))
         lit.material[0] = op_mul(lit.material[0], lit.material[0]);
     /* With alpha 1 the colour is that before the multiplication by alpha, to the bit. */
     lit.diffuse[3] = 1.0f;
-    shade_pixel(&pass->view, &mistaken, &lit, color);
+    shade_skipping(&pass->view, &mistaken, &lit, color);
     for (int i = 0; i < 3; i++) {
         float c = mutate_has(pass, MUTATION_SRGB_BLENDED) ? encode(pass, color[i]) : color[i];
         source[i] = mutate_has(pass, MUTATION_NOT_PREMULTIPLIED) ? c : op_mul(c, alpha);

@@ -3,10 +3,9 @@
 #define LANES 1
 #include "ref/pipeline/shade_body.h"
 
-bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4])
+static void shade(const View *view, const ShadeForm *form, bool skip, const Texel *texel,
+                  float source[4])
 {
-    if (texel->diffuse[3] <= SHADING_ALPHA_TEST)
-        return false;
     ShadeBatch batch;
     for (int i = 0; i < 3; i++) {
         batch.normal[i][0] = texel->normal[i];
@@ -15,8 +14,20 @@ bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, fl
     }
     for (int i = 0; i < 4; i++)
         batch.diffuse[i][0] = texel->diffuse[i];
-    shade_batch_skipping(view, form, false, &batch);
+    shade_batch_skipping(view, form, skip, &batch);
     for (int i = 0; i < 4; i++)
         source[i] = batch.source[i][0];
+}
+
+bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4])
+{
+    if (texel->diffuse[3] <= SHADING_ALPHA_TEST)
+        return false;
+    shade(view, form, false, texel, source);
     return true;
+}
+
+void shade_skipping(const View *view, const ShadeForm *form, const Texel *texel, float source[4])
+{
+    shade(view, form, true, texel, source);
 }

@@ -20,6 +20,9 @@ typedef struct ShadeForm {
  * alpha test discards. Flushing mode. */
 bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
 
+/* The same without the alpha test, and faster: lights that change no bit are left out. */
+void shade_skipping(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
+
 /* Resolve: final colour over the background from an accumulated pixel whose transmittance to the
  * background is `transmittance`. Flushing mode, as below. */
 static inline void shade_final(const View *view, const float accum[4], float transmittance,

@@ -146,6 +146,12 @@ refuse 'deep, memory' 'deep image.*--max-memory' render tutorial -o a.exr --deep
     --size 512x512 --max-memory 9M
 refuse 'deep, directory missing' 'nosuch/a.exr' render tutorial -o nosuch/a.exr --deep --with truth
 refuse 'deep, disk full' 'No space left' render tutorial --size 8x8 -o full.exr --deep --with truth
+refuse 'unknown mistake' '--mutate nonsense' render tutorial --size 8x8 -o a.png --mutate nonsense
+refuse 'no mistake' 'with commas between' render tutorial --size 8x8 -o a.png --mutate passes-4,
+refuse 'mistake with gl' 'expected --with ref, not gl' render tutorial --size 8x8 -o a.png --with gl \
+    --mutate passes-4
+refuse 'mistake with dual' 'expected method peel or forward' render tutorial --size 8x8 -o a.png \
+    --method dual --mutate passes-4
 refuse 'flatten: no file' 'expected a deep EXR' flatten -o a.exr
 refuse 'flatten: no output' '-o FILE' flatten deep.exr
 refuse 'flatten: extension' '.png or .exr' flatten deep.exr -o a.jpg
