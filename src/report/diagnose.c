@@ -21,6 +21,18 @@ void report_diagnose_list(FILE *out)
 
 /* ---- sentences ------------------------------------------------------------------------------- */
 
+/* As many names as there is room for. */
+static void describe_equals(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE])
+{
+    char name[DIAGNOSE_NAME];
+    int length =
+        snprintf(out, DIAGNOSE_LINE, "One of %zu mistakes that this image cannot tell apart",
+                 diagnosis->equals);
+    for (size_t i = 0; i < diagnosis->equals && length < DIAGNOSE_LINE - DIAGNOSE_NAME; i++)
+        length += snprintf(out + length, (size_t)(DIAGNOSE_LINE - length), "%s%s", i ? ", " : ": ",
+                           diagnose_name(diagnosis->rows[i].mutations, name));
+}
+
 void report_diagnose_verdict(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE])
 {
     char name[DIAGNOSE_NAME];
@@ -32,8 +44,7 @@ void report_diagnose_verdict(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE]
         break;
     case DIAGNOSE_MISTAKE:
         if (diagnosis->equals > 1)
-            snprintf(out, DIAGNOSE_LINE, "One of %zu mistakes that this scene cannot tell apart",
-                     diagnosis->equals);
+            describe_equals(diagnosis, out);
         else
             snprintf(out, DIAGNOSE_LINE, "The mistake is %s", best);
         break;

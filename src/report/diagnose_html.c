@@ -135,7 +135,7 @@ static void put_pictures(FileWriter *page, const Diagnosis *diagnosis)
         put_picture(page, diagnosis, "left.png", caption);
     }
     file_writer_print(page, "</div>\n<p class=\"note\">Differences are of the values that their "
-                            "file stores.</p>\n");
+                            "file stores, encoded ones as they are.</p>\n");
     html_scale(page);
     file_writer_print(page, "</section>\n");
 }

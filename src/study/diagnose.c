@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/progress.h"
+#include "study/changes.h"
 #include "study/evidence.h"
 
 #include <math.h>
@@ -11,10 +12,10 @@
 #include <string.h>
 
 enum {
-    KEPT = 8,          /* files of the best mistakes so far, to find equals among */
-    PAIRED_GROUPS = 4, /* the best mistakes that are tried in pairs: of so many files, */
-    PAIRED_ROWS = 6,   /* so many at most */
-    ROWS = MUTATION_COUNT + PAIRED_ROWS * (PAIRED_ROWS - 1) / 2
+    KEPT = 8,     /* files of the best mistakes so far, to find equals among */
+    PAIRED = 4,   /* the best mistakes, which are tried in pairs */
+    PARTNERS = 6, /* and those that change what the best leaves unexplained */
+    ROWS = MUTATION_COUNT + PAIRED * (PAIRED - 1) / 2 + PAIRED * PARTNERS
 };
 #define PAIR_GAIN 0.02 /* what a pair has to explain beyond the better of the two */
 
@@ -33,6 +34,7 @@ typedef struct Work {
     Image predicted; /* of the reference, in the form of `none` */
     Kept kept[KEPT];
     int kept_count, groups;
+    Changes changes;
     Diagnosis *out;
 } Work;
 
@@ -59,6 +61,21 @@ static RenderDesc with_mutations(const Work *work, uint64_t mutations)
     asked.mutations = mutations;
     mutation_apply(&asked, &out);
     return out;
+}
+
+static MutationId id_of(uint64_t bit)
+{
+    return (MutationId)__builtin_ctzll(bit);
+}
+
+static bool is_single(uint64_t mutations)
+{
+    return (mutations & (mutations - 1)) == 0;
+}
+
+static bool obeys(MethodId method)
+{
+    return method == METHOD_PEEL || method == METHOD_FORWARD;
 }
 
 static FitRendering rendering_of(uint64_t mutations, const Image *final)
@@ -166,6 +183,8 @@ static Result try_mutations(Work *work, uint64_t mutations, const char *label, b
     if (result != RESULT_OK)
         return result;
     result = judge(work, mutations, &final, visible);
+    if (result == RESULT_OK && *visible && is_single(mutations))
+        changes_mark(&work->changes, id_of(mutations), &work->final, &final);
     image_free(&final);
     return result;
 }
@@ -189,31 +208,6 @@ static Result try_singles(Work *work)
 
 /* ---- pairs ----------------------------------------------------------------------------------- */
 
-static MutationId id_of(uint64_t bit)
-{
-    return (MutationId)__builtin_ctzll(bit);
-}
-
-/* The best rows, equals included, of so many files. */
-static int choose_paired(const Work *work, DiagnoseRow *sorted, uint64_t paired[PAIRED_ROWS])
-{
-    size_t count = work->out->count;
-    int chosen = 0, groups = 0, seen[PAIRED_GROUPS];
-    memcpy(sorted, work->out->rows, count * sizeof *sorted);
-    qsort(sorted, count, sizeof *sorted, compare_rows);
-    for (size_t i = 0; i < count && chosen < PAIRED_ROWS; i++) {
-        bool known = false;
-        for (int g = 0; g < groups; g++)
-            known |= seen[g] == sorted[i].group;
-        if (!known && groups == PAIRED_GROUPS)
-            break;
-        if (!known)
-            seen[groups++] = sorted[i].group;
-        paired[chosen++] = sorted[i].mutations;
-    }
-    return chosen;
-}
-
 static double explained_by(const Work *work, uint64_t bit)
 {
     for (size_t i = 0; i < work->out->count; i++)
@@ -224,9 +218,14 @@ static double explained_by(const Work *work, uint64_t bit)
 
 static Result try_pair(Work *work, uint64_t a, uint64_t b)
 {
+    for (size_t i = 0; i < work->out->count; i++)
+        if (work->out->rows[i].mutations == (a | b))
+            return RESULT_OK; /* tried already */
     double single = fmax(explained_by(work, a), explained_by(work, b));
     bool visible;
-    if (mutation_excludes(id_of(a), id_of(b)))
+    RenderDesc both = with_mutations(work, a | b);
+    /* Another method's renderer obeys settings only. */
+    if (a == b || mutation_excludes(id_of(a), id_of(b)) || (both.mutations && !obeys(both.method)))
         return RESULT_OK;
     Result result = try_mutations(work, a | b, "two of the best", &visible);
     if (result != RESULT_OK || !visible)
@@ -248,22 +247,77 @@ static void drop_rows(Diagnosis *out)
     out->count = left;
 }
 
+/* Pixels that the first row leaves unexplained: a byte each. False when its file was not kept. */
+static bool mark_left(const Work *work, const DiagnoseRow *row, uint8_t *left)
+{
+    for (int i = 0; i < work->kept_count; i++) {
+        const Image *predicted = &work->kept[i].predicted;
+        if (work->out->rows[work->kept[i].row].group != row->group)
+            continue;
+        for (int y = 0; y < predicted->height; y++)
+            for (int x = 0; x < predicted->width; x++)
+                *left++ = fit_residual(&work->fit, &row->form, predicted, x, y) > 0.0;
+        return true;
+    }
+    return false;
+}
+
+/* The mistakes that change what is left, the likest first; returns how many. */
+static int choose_partners(const Work *work, const uint8_t *left, uint64_t partners[PARTNERS])
+{
+    double likeness[PARTNERS] = {0};
+    int count = 0;
+    for (int id = 0; id < MUTATION_COUNT; id++) {
+        double like = changes_likeness(&work->changes, (MutationId)id, left);
+        int place = count < PARTNERS ? count++ : PARTNERS;
+        for (; place > 0 && likeness[place - 1] < like; place--)
+            if (place < PARTNERS) {
+                likeness[place] = likeness[place - 1];
+                partners[place] = partners[place - 1];
+            }
+        if (place < PARTNERS) {
+            likeness[place] = like;
+            partners[place] = mutation_bit((MutationId)id);
+        }
+    }
+    return count;
+}
+
+/* sorted: the single mistakes by rank. Each of the best file's with what may complete it. */
+static Result try_partners(Work *work, const DiagnoseRow *sorted, int count)
+{
+    uint64_t partners[PARTNERS];
+    uint8_t *left = memory_array(work->changes.pixels, 1);
+    if (!left)
+        return RESULT_NO_MEMORY;
+    int partner_count =
+        mark_left(work, &sorted[0], left) ? choose_partners(work, left, partners) : 0;
+    Result result = RESULT_OK;
+    for (int i = 0; i < count && i < PAIRED && sorted[i].group == sorted[0].group; i++)
+        for (int j = 0; j < partner_count && result == RESULT_OK; j++)
+            result = try_pair(work, sorted[i].mutations, partners[j]);
+    free(left);
+    return result;
+}
+
 /* Where no single mistake explains all. */
 static Result try_pairs(Work *work)
 {
-    DiagnoseRow *sorted = memory_array(work->out->count + 1, sizeof *sorted);
-    uint64_t paired[PAIRED_ROWS];
+    int count = (int)work->out->count;
+    DiagnoseRow *sorted = memory_array((size_t)count, sizeof *sorted);
+    Result result = RESULT_OK;
     if (!sorted)
         return RESULT_NO_MEMORY;
-    int count = choose_paired(work, sorted, paired);
-    bool exact = count > 0 && sorted[0].beyond == 0;
-    Result result = RESULT_OK;
-    free(sorted);
-    progress_context("pairs");
-    for (int i = 0; i < count && !exact; i++)
-        for (int j = i + 1; j < count && result == RESULT_OK; j++)
-            result = try_pair(work, paired[i], paired[j]);
+    memcpy(sorted, work->out->rows, (size_t)count * sizeof *sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_rows);
+    progress_context("pairs of mistakes");
+    if (count > 1 && sorted[0].beyond > 0)
+        result = try_partners(work, sorted, count);
+    for (int i = 0; i < count && i < PAIRED && sorted[0].beyond > 0; i++)
+        for (int j = i + 1; j < count && j < PAIRED && result == RESULT_OK; j++)
+            result = try_pair(work, sorted[i].mutations, sorted[j].mutations);
     progress_context(NULL);
+    free(sorted);
     return result;
 }
 
@@ -350,7 +404,7 @@ static Result gather(Work *work)
 
 static Result check(const RenderDesc *desc, const GivenImage *given)
 {
-    if (desc->mutations || (desc->method != METHOD_PEEL && desc->method != METHOD_FORWARD))
+    if (desc->mutations || !obeys(desc->method))
         return result_fail(RESULT_BAD_INPUT, "diagnose: the catalogue of mistakes is of depth "
                                              "peeling, expected --method peel or forward");
     if (given->nonfinite == (uint64_t)given->stored.width * (uint64_t)given->stored.height)
@@ -370,7 +424,7 @@ static Result run(Work *work)
 {
     Diagnosis *out = work->out;
     out->rows = memory_array(ROWS, sizeof *out->rows);
-    Result result = out->rows ? RESULT_OK : RESULT_NO_MEMORY;
+    Result result = out->rows ? changes_create(out->pixels, &work->changes) : RESULT_NO_MEMORY;
     if (result == RESULT_OK)
         result = render(work, &work->desc, "reference", &work->final);
     FitRendering reference = {&work->final, false};
@@ -395,6 +449,7 @@ static Result run(Work *work)
 static void release(Work *work)
 {
     fit_free(&work->fit);
+    changes_free(&work->changes);
     image_free(&work->final);
     image_free(&work->predicted);
     for (int i = 0; i < work->kept_count; i++)
