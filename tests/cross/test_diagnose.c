@@ -114,12 +114,50 @@ START_TEST(test_planted)
 }
 END_TEST
 
+/* Two mistakes at once: neither explains all, both do. */
+START_TEST(test_pairs)
+{
+    static const MutationId pairs[][2] = {
+        {MUTATION_NOT_PREMULTIPLIED, MUTATION_PEEL_BIAS_1E_3},
+        {MUTATION_PREMULTIPLIED_TWICE, MUTATION_PASSES_4},
+        {MUTATION_BACKGROUND_WEIGHTED_WRONGLY, MUTATION_BACK_FACES_CULLED},
+        {MUTATION_MISSING_1_OVER_PI, MUTATION_DEPTH_NOT_SWAPPED},
+        {MUTATION_SRGB_ENCODED_TWICE, MUTATION_LIGHTS_OFF_BY_ONE},
+        {MUTATION_OPAQUE_TEST_STRICT, MUTATION_LAYERS_REVERSED}};
+    Scene scene;
+    bool only;
+    choose();
+    planted_scene("tutorial", &scene);
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
+        for (int file = 0; file < PLANTED_FILES; file++) {
+            uint64_t a = mutation_bit(pairs[i][0]), b = mutation_bit(pairs[i][1]);
+            GivenImage given = planted_mistake(&scene, &desc, a | b, (PlantedFile)file);
+            Diagnosis diagnosis;
+            char name[DIAGNOSE_NAME], first[DIAGNOSE_NAME] = "nothing";
+            planted_diagnose(&scene, &desc, &given, &diagnosis);
+            if (diagnosis.count)
+                diagnose_name(diagnosis.rows[0].mutations, first);
+            /* One that is invisible beside the other is not asked for. */
+            uint64_t wanted = a | b;
+            wanted &= ~diagnosis.invisible;
+            ck_assert_msg(diagnosis.verdict == DIAGNOSE_MISTAKE &&
+                              planted_first(&diagnosis, wanted, &only),
+                          "%s: %s, first %s", diagnose_name(a | b, name),
+                          diagnose_verdict_name(diagnosis.verdict), first);
+            diagnose_free(&diagnosis);
+            given_free(&given);
+        }
+    scene_free(&scene);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("diagnose");
     TCase *tcase = tcase_create("planted");
     tcase_set_timeout(tcase, 1800);
     tcase_add_test(tcase, test_planted);
+    tcase_add_test(tcase, test_pairs);
     suite_add_tcase(suite, tcase);
     return testing_run_here(suite);
 }
