@@ -22,6 +22,7 @@ static const Command commands[] = {
     {"check", "somebody's image or passes against the reference", cmd_check},
     {"compare", "all three renderers; table, JSON, report", cmd_compare},
     {"diagnose", "which known mistake explains an image by another program", cmd_diagnose},
+    {"diff", "two images or traces: idiff's figures and exit codes, and ULP", cmd_diff},
     {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
     {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
     {"hard", "the hard cases, each against its own expectation", cmd_hard},
@@ -35,9 +36,11 @@ static void print_help(FILE *out)
                  "The reference for order-independent transparency by depth peeling.\n\n");
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
         fprintf(out, "  peel %-9s %s\n", commands[i].name, commands[i].summary);
-    fprintf(out, "\n'peel COMMAND --help' shows a command's options.\n\n"
-                 "Exit codes: 0 agree or done, 2 differ beyond the threshold, 3 sizes differ,\n"
-                 "4 bad input, usage or environment (one line on stderr says what).\n");
+    fprintf(out,
+            "\n'peel COMMAND --help' shows a command's options.\n\n"
+            "Exit codes: 0 agree or done, 1 warning threshold, 2 differ beyond the threshold,\n"
+            "3 sizes differ, 4 bad input, usage or environment (one line on stderr says "
+            "what).\n");
 }
 
 /* Files must not be opened under the numbers of streams that were closed. */

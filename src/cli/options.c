@@ -39,22 +39,24 @@ int options_fail(Result result)
 }
 
 /* Whether getopt would take word: no option at all, or one of the parser's or its children's. */
-static bool is_known(const struct argp *argp, const char *word)
+static bool is_known(const struct argp *argp, unsigned flags, const char *word)
 {
     if (word[0] != '-' || word[1] == '\0')
         return true;
-    size_t length = strcspn(word + 2, "=");
+    const char *name = word + 1 + (word[1] == '-');
+    bool is_long = word[1] == '-' || ((flags & ARGP_LONG_ONLY) && word[2]);
+    size_t length = strcspn(name, "=");
     for (const struct argp_option *option = argp->options; option->name || option->doc; option++)
-        if (word[1] != '-' ? option->key == word[1]
-                           : option->name && strncmp(option->name, word + 2, length) == 0)
+        if (!is_long ? option->key == word[1]
+                     : option->name && strncmp(option->name, name, length) == 0)
             return true;
     for (const struct argp_child *child = argp->children; child && child->argp; child++)
-        if (is_known(child->argp, word))
+        if (is_known(child->argp, flags, word))
             return true;
     return false;
 }
 
-int options_parse(const struct argp *argp, int argc, char **argv, void *input)
+static int parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *input)
 {
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0) {
@@ -62,18 +64,28 @@ int options_parse(const struct argp *argp, int argc, char **argv, void *input)
             return OPTIONS_HELPED;
         }
     /* getopt would print two lines of its own, and argp has hidden options. */
-    error_t error = argp_parse(argp, argc, argv, ARGP_NO_ERRS | ARGP_NO_HELP, NULL, input);
+    error_t error = argp_parse(argp, argc, argv, ARGP_NO_ERRS | ARGP_NO_HELP | flags, NULL, input);
     if (error == 0)
         return 0;
     if (!reported) {
         const char *word = argv[argc - 1];
         for (int i = argc - 1; i > 0; i--)
-            if (!is_known(argp, argv[i]))
+            if (!is_known(argp, flags, argv[i]))
                 word = argv[i];
         options_error("'%s' is no option or argument here, or lacks its value; see '%s --help'",
                       word, argv[0]);
     }
     return EXIT_BAD_INPUT;
+}
+
+int options_parse(const struct argp *argp, int argc, char **argv, void *input)
+{
+    return parse(argp, 0, argc, argv, input);
+}
+
+int options_parse_dash(const struct argp *argp, int argc, char **argv, void *input)
+{
+    return parse(argp, ARGP_LONG_ONLY, argc, argv, input);
 }
 
 /* ---- numbers ---- */

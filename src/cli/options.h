@@ -10,6 +10,7 @@
 /* The documented exit codes of all commands. */
 enum {
     EXIT_AGREE = 0,
+    EXIT_WARN = 1,
     EXIT_DIFFER = 2,
     EXIT_SIZES = 3,
     EXIT_BAD_INPUT = 4
@@ -51,6 +52,8 @@ enum {
     OPTIONS_HELPED = -1
 };
 int options_parse(const struct argp *argp, int argc, char **argv, void *input);
+/* The same where a single dash may begin long options too: -fail as well as --fail. */
+int options_parse_dash(const struct argp *argp, int argc, char **argv, void *input);
 
 /* For parsers: one line on stderr, and the error code that options_parse turns into exit 4. */
 error_t options_error(const char *format, ...) __attribute__((format(printf, 1, 2)));

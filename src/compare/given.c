@@ -34,10 +34,6 @@ const char *given_alpha_name(GivenAlpha alpha)
 
 static Result load_png(const char *path, GivenImage *out)
 {
-    enum {
-        COLOR_TYPE = 25, /* of a PNG file, in its first chunk; bit 2: with alpha */
-        ALPHA_BIT = 4
-    };
     unsigned char *bytes;
     size_t count;
     Result result = file_load(path, &bytes, &count);
@@ -45,7 +41,7 @@ static Result load_png(const char *path, GivenImage *out)
         return result;
     result = decode_image(bytes, count, path, &out->stored);
     out->kind = "PNG";
-    out->has_alpha = count > COLOR_TYPE && (bytes[COLOR_TYPE] & ALPHA_BIT) != 0;
+    out->has_alpha = result == RESULT_OK && decode_channels(bytes, count) % 2 == 0;
     free(bytes);
     return result;
 }
@@ -82,13 +78,16 @@ static void count_nonfinite(GivenImage *given)
 
 Result given_load(const char *path, GivenImage *out)
 {
-    unsigned char magic[4];
+    bool exr;
+    char magic[4];
     size_t count;
     *out = (GivenImage){0};
-    Result result = file_head(path, magic, sizeof magic, &count);
+    Result result = exr_is(path, &exr);
+    if (result == RESULT_OK)
+        result = file_head(path, magic, sizeof magic, &count);
     if (result != RESULT_OK)
         return result;
-    if (count == 4 && memcmp(magic, EXR_MAGIC, 4) == 0)
+    if (exr)
         result = load_exr(path, out);
     else if (count == 4 && memcmp(magic, "\x89PNG", 4) == 0)
         result = load_png(path, out);

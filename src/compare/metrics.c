@@ -7,28 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static float as_float(uint32_t bits)
-{
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static uint32_t channel_ulp(FormatKind kind, uint32_t a, uint32_t b)
-{
-    if (kind == KIND_FLOAT)
-        return ulp_distance(as_float(a), as_float(b));
-    if (kind == KIND_HALF)
-        return ulp_distance_half((uint16_t)a, (uint16_t)b);
-    return a > b ? a - b : b - a;
-}
-
 static void fold_value(BufferMetrics *metrics, PixelFormat format, const unsigned char *a,
                        const unsigned char *b, int x, int y, int channel)
 {
     const FormatInfo *info = format_info(format);
     uint32_t ulp =
-        channel_ulp(info->kind, format_bits(format, a, channel), format_bits(format, b, channel));
+        format_ulp(info->kind, format_bits(format, a, channel), format_bits(format, b, channel));
     if (ulp == 0)
         return;
     metrics->differing++;

@@ -53,15 +53,6 @@ static Result is_dump(const char *path, bool *is)
     return result;
 }
 
-static Result is_exr(const char *path, bool *is)
-{
-    char head[4];
-    size_t count;
-    Result result = file_head(path, head, sizeof head, &count);
-    *is = result == RESULT_OK && count == 4 && memcmp(head, EXR_MAGIC, 4) == 0;
-    return result;
-}
-
 Result trace_file_is(const char *path, bool *is)
 {
     bool exr;
@@ -69,7 +60,7 @@ Result trace_file_is(const char *path, bool *is)
     Result result = is_dump(path, is);
     if (result != RESULT_OK || *is)
         return result;
-    result = is_exr(path, &exr);
+    result = exr_is(path, &exr);
     if (result != RESULT_OK || !exr)
         return result;
     result = exr_part_count(path, &parts);

@@ -124,3 +124,9 @@ Result decode_image(const unsigned char *bytes, size_t count, const char *label,
     *out = (Image){width, height, wide ? FORMAT_RGBA16 : FORMAT_RGBA8, pixels};
     return RESULT_OK;
 }
+
+int decode_channels(const unsigned char *bytes, size_t count)
+{
+    int width, height, channels = 4;
+    return stbi_info_from_memory(bytes, (int)count, &width, &height, &channels) ? channels : 4;
+}

@@ -11,8 +11,6 @@
 
 #include <stdbool.h>
 
-#define EXR_MAGIC "\x76\x2f\x31\x01" /* the first four bytes of a file */
-
 typedef struct ExrPart {
     const char *name; /* unique in the file; NULL for a single unnamed part */
     PixelFormat format;
@@ -35,6 +33,8 @@ Result exr_write(const Image *image, const char *path);
  * channel. part: index. The caller frees *out; name receives the part's name ("" if none). */
 Result exr_read(const char *path, int part, Image *out, char name[64]);
 Result exr_part_count(const char *path, int *count);
+/* Whether the file begins as EXR files do; IO or BAD_INPUT when it cannot be read. */
+Result exr_is(const char *path, bool *is);
 /* The part's name, "" where it has none. */
 Result exr_part_name(const char *path, int part, char name[64]);
 /* Whether a part has a channel of this name. */

@@ -69,6 +69,10 @@ Result exr_output_open(const char *path, ExrOutput *out);
 Result exr_output_close(ExrOutput *output, bool commit);
 Result exr_output_fail(const ExrOutput *output, exr_result_t code);
 
+/* The format that the part says it holds (EXR_FORMAT_ATTRIBUTE), if its channels can hold it. */
+bool exr_declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,
+                         PixelFormat *out);
+
 /* ---- messages ---- */
 
 /* Keeps OpenEXRCore's first message since exr_message_clear, on the calling thread, instead of

@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The format that the part says it holds, if its channels can hold it. */
-static bool declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,
-                            PixelFormat *out)
+bool exr_declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,
+                         PixelFormat *out)
 {
     const char *text;
     int32_t length;
@@ -79,7 +78,7 @@ static Result part_format(const ExrReader *reader, int part, PixelFormat *out)
             return result_fail(RESULT_UNSUPPORTED,
                                "%s: channel %s is subsampled, expected one value per pixel",
                                reader->path, list->entries[i].name.str);
-    if (declared_format(reader, part, list, out))
+    if (exr_declared_format(reader, part, list, out))
         return RESULT_OK;
     return guess_format(reader, list, out);
 }
@@ -198,6 +197,16 @@ static Result read_part(const ExrReader *reader, int part, Image *out)
     exr_decoding_destroy(reader->context, &pipeline);
     free(scratch);
     fill_alpha(list, out);
+    return result;
+}
+
+Result exr_is(const char *path, bool *is)
+{
+    static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
+    unsigned char head[4];
+    size_t count;
+    Result result = file_head(path, head, sizeof head, &count);
+    *is = result == RESULT_OK && count == 4 && memcmp(head, magic, 4) == 0;
     return result;
 }
 

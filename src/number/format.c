@@ -215,6 +215,15 @@ uint32_t ulp_distance_half(uint16_t a, uint16_t b)
     return distance(ordered(a & 0x7fffu, a >> 15), ordered(b & 0x7fffu, b >> 15));
 }
 
+uint32_t format_ulp(FormatKind kind, uint32_t a, uint32_t b)
+{
+    if (kind == KIND_FLOAT)
+        return ulp_distance(op_from_bits(a), op_from_bits(b));
+    if (kind == KIND_HALF)
+        return ulp_distance_half((uint16_t)a, (uint16_t)b);
+    return a > b ? a - b : b - a;
+}
+
 bool format_overflowed(PixelFormat format, const void *pixel)
 {
     const FormatInfo *info = &infos[format];

@@ -83,6 +83,8 @@ float depth16_to_float(uint32_t depth); /* a texel fetch: (float)u · (float)(1/
  * are NaN; +0 and −0 are 1 apart; UINT32_MAX between a NaN and a number. */
 uint32_t ulp_distance(float a, float b);
 uint32_t ulp_distance_half(uint16_t a, uint16_t b);
+uint32_t format_ulp(FormatKind kind, uint32_t a,
+                    uint32_t b); /* of stored bits; integers by value */
 
 /* Whether a float or half channel of the pixel is where sums end that overflow: not finite, or as a
  * half ±65504, which truncation does not go beyond. */

@@ -95,7 +95,7 @@ static void put_picture(FileWriter *page, const CheckReport *report, const char 
 static void put_pictures(FileWriter *page, const CheckReport *report)
 {
     file_writer_print(page, "<section aria-labelledby=\"pictures\">\n<h2 id=\"pictures\">Pictures"
-                            "</h2>\n<div class=\"pictures\">\n");
+                            "</h2>\n<div class=\"three\">\n");
     if (report->theirs_image.pixels)
         put_picture(page, report, "theirs.png", "Theirs, display-transformed");
     put_picture(page, report, "reference.png", "The reference (ref)");

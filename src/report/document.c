@@ -3,6 +3,8 @@
 #include "base/file.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 json_t *document_real(double value)
 {
@@ -12,6 +14,20 @@ json_t *document_real(double value)
 json_t *document_count(uint64_t value)
 {
     return json_integer((json_int_t)value);
+}
+
+json_t *document_text(const char *text)
+{
+    json_t *value = json_string(text);
+    if (value)
+        return value;
+    char *ascii = strdup(text);
+    for (char *c = ascii; c && *c; c++)
+        if ((unsigned char)*c > 126)
+            *c = '?';
+    value = ascii ? json_string(ascii) : NULL;
+    free(ascii);
+    return value;
 }
 
 void document_put(Document *json, json_t *object, const char *key, json_t *value)

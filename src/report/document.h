@@ -16,6 +16,9 @@ typedef struct Document {
 json_t *document_real(double value);
 json_t *document_count(uint64_t value);
 
+/* JSON is UTF-8; a path need not be: where it is not, its bytes beyond ASCII become '?'. */
+json_t *document_text(const char *text);
+
 /* Both take over value; NULL counts as a failure. */
 void document_put(Document *json, json_t *object, const char *key, json_t *value);
 void document_append(Document *json, json_t *array, json_t *value);

@@ -97,6 +97,16 @@ Result heatmap_image(const Image *a, const Image *b, Image *out)
     return heatmap_reduced(a, b, 1, out);
 }
 
+Result heatmap_differences(const float *differences, int width, int height, Image *out)
+{
+    Result result = image_create(width, height, FORMAT_RGBA8, out);
+    if (result != RESULT_OK)
+        return result;
+    for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+        color_of((double)differences[i], (uint8_t *)out->pixels + 4 * i);
+    return RESULT_OK;
+}
+
 Result heatmap_scale(int width, int height, Image *out)
 {
     Result result = image_create(width, height, FORMAT_RGBA8, out);

@@ -17,6 +17,9 @@ Result heatmap_image(const Image *a, const Image *b, Image *out);
  * at the right and bottom edges), so that a single differing pixel stays visible. */
 Result heatmap_reduced(const Image *a, const Image *b, int block, Image *out);
 
+/* The same of differences that are known: width · height, NaN for NaN and infinity. */
+Result heatmap_differences(const float *differences, int width, int height, Image *out);
+
 /* The legend's colours, left (low) to right (high): *out FORMAT_RGBA8, the caller frees. */
 Result heatmap_scale(int width, int height, Image *out);
 

@@ -8,21 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* JSON is UTF-8; a path need not be. Where it is not, its bytes beyond ASCII become '?'. */
-static json_t *string(const char *text)
-{
-    json_t *value = json_string(text);
-    if (value)
-        return value;
-    char *ascii = strdup(text);
-    for (char *c = ascii; c && *c; c++)
-        if ((unsigned char)*c > 126)
-            *c = '?';
-    value = ascii ? json_string(ascii) : NULL;
-    free(ascii);
-    return value;
-}
-
 static json_t *renderers(Document *json, const Threeway *report)
 {
     json_t *object = json_object();
@@ -40,8 +25,8 @@ static json_t *renderers(Document *json, const Threeway *report)
             document_put(json, one, "nodes", document_count(frame->nodes));
             document_put(json, one, "node_bytes", document_count(frame->node_bytes));
         }
-        document_put(json, one, "version", string(frame->version));
-        document_put(json, one, "renderer", string(frame->renderer));
+        document_put(json, one, "version", document_text(frame->version));
+        document_put(json, one, "renderer", document_text(frame->renderer));
         document_put(json, object, threeway_renderer_name(i), one);
     }
     return object;
@@ -53,7 +38,7 @@ static json_t *buffers(Document *json, const PairReport *pair)
     for (size_t i = 0; i < pair->buffer_count; i++) {
         const BufferMetrics *buffer = &pair->buffers[i];
         json_t *one = json_object();
-        document_put(json, one, "name", string(buffer->name));
+        document_put(json, one, "name", document_text(buffer->name));
         document_put(json, one, "values", document_count(buffer->values));
         document_put(json, one, "differing", document_count(buffer->differing));
         document_put(json, one, "max_ulp", json_integer(buffer->max_ulp));
@@ -170,12 +155,12 @@ static json_t *document(Document *json, const Threeway *report)
     const Frame *ref = &report->frames[RENDERER_REF];
     const MethodInfo *method = method_info(report->desc.method);
     json_t *root = json_object();
-    document_put(json, root, "scene", string(report->scene_path));
+    document_put(json, root, "scene", document_text(report->scene_path));
     document_put(json, root, "size", json_pack("[ii]", report->desc.width, report->desc.height));
-    document_put(json, root, "method", string(method->name));
+    document_put(json, root, "method", document_text(method->name));
     document_put(json, root, "exact", json_boolean(method->exact));
     document_put(json, root, "passes", json_integer(ref->peels));
-    document_put(json, root, "profile", string(report->seed_profile ? "seed" : "default"));
+    document_put(json, root, "profile", document_text(report->seed_profile ? "seed" : "default"));
     document_put(json, root, "fma", json_boolean(ref->fused));
     document_put(json, root, "agree", json_boolean(report->agree));
     document_put(json, root, "tolerance", document_real(report->tolerance));

@@ -55,7 +55,7 @@ static Result load_depth(const CheckRun *run, const char *path, Image *out)
 {
     bool exr;
     char name[64];
-    Result result = check_is_exr(path, &exr);
+    Result result = exr_is(path, &exr);
     if (result != RESULT_OK)
         return result;
     if (exr) {
@@ -173,7 +173,11 @@ Result check_run(const Scene *scene, const RenderDesc *desc, Renderer ref, Rende
     if (out->tolerance < 0.0)
         out->tolerance = method > 0.0 ? method : TOLERANCE_DEFAULT;
     *sizes = CHECK_SIZES_EQUAL;
-    CheckRun run = {.desc = *desc, .check = check, .report = out, .sizes = sizes};
+    CheckRun run = {.desc = *desc,
+                    .background = scene->background,
+                    .check = check,
+                    .report = out,
+                    .sizes = sizes};
     Result result = load(&run);
     if (result == RESULT_OK)
         result = render(&run, scene, ref, truth);

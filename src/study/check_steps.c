@@ -1,6 +1,5 @@
 #include "study/check_steps.h"
 
-#include "base/file.h"
 #include "base/memory.h"
 #include "compare/trace_file.h"
 
@@ -13,15 +12,6 @@
 
 /* Of window depths: what another order of a plane's operations may do in single precision. */
 #define DEPTH_TOLERANCE 1e-6
-
-Result check_is_exr(const char *path, bool *is)
-{
-    char head[4];
-    size_t count;
-    Result result = file_head(path, head, sizeof head, &count);
-    *is = result == RESULT_OK && count == 4 && memcmp(head, EXR_MAGIC, 4) == 0;
-    return result;
-}
 
 /* A new step that agrees so far; NULL when memory is exhausted. Valid until the next. */
 static CheckStep *add_step(CheckRun *run, int order, const char *name)
@@ -388,13 +378,27 @@ static Result check_file(CheckRun *run, size_t index)
 /* ---- all --------------------------------------------------------------------------------------
  */
 
-/* Of a trace, for pictures: what it shows in the end. */
+/* Of a trace, for pictures: the accumulation over the background. With the seed's opaque blend its
+ * alpha is no transmittance; the reference's is taken. */
 static Result trace_picture(CheckRun *run)
 {
+    Image *out = &run->report->theirs_image;
     int index = store_find(run->theirs, "accum");
     if (index < 0 || format_info(store_buffer(run->theirs, index)->format)->channels != 4)
         return RESULT_OK;
-    return widened_buffer(run->theirs, index, &run->report->theirs_image);
+    Result result = widened_buffer(run->theirs, index, out);
+    if (result != RESULT_OK)
+        return result;
+    float *pixel = out->pixels;
+    const float *reference = run->report->frame.final.pixels;
+    size_t count = (size_t)out->width * (size_t)out->height;
+    for (size_t i = 0; i < count; i++, pixel += 4, reference += 4) {
+        float left = run->desc.opaque_blend == OPAQUE_BLEND_SEED ? 1.0f - reference[3] : pixel[3];
+        for (int c = 0; c < 3; c++)
+            pixel[c] += run->background[c] * left;
+        pixel[3] = 1.0f - left;
+    }
+    return RESULT_OK;
 }
 
 Result check_steps(CheckRun *run)

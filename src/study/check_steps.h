@@ -14,6 +14,7 @@ typedef struct CheckLoaded {
 
 typedef struct CheckRun {
     RenderDesc desc;
+    const float *background; /* the scene's */
     const CheckDesc *check;
     CheckReport *report;
     CheckSizes *sizes;
@@ -25,7 +26,5 @@ typedef struct CheckRun {
 
 /* Fills the report's steps from what is loaded and rendered. */
 Result check_steps(CheckRun *run);
-
-Result check_is_exr(const char *path, bool *is);
 
 #endif
