@@ -26,6 +26,7 @@ for key in sys.argv[1:]:
 print(value)' "$@"
 }
 
+foreign=${PEEL_FOREIGN:-$(dirname "$peel")/tests}
 settings='--size 64x48 --background 0.2,0.3,0.4'
 
 # --- the catalogue ---
@@ -127,7 +128,31 @@ refused 4 'all methods' tutorial right.png $settings --method all
 refused 4 'json nowhere' tutorial right.png $settings --json none/x.json
 refused 4 'report over a file' tutorial right.png $settings --report right.png
 
+# --- a renderer that is none of ours; the red plane is opaque, so that some surfaces are hidden ---
+python3 - "$source/data/scenes/crossing_planes.gltf" crossing.gltf <<'END'
+import json, sys
+scene = json.load(open(sys.argv[1]))
+for material in scene["materials"]:
+    if material["name"] == "red":
+        material["alphaMode"] = "OPAQUE"
+json.dump(scene, open(sys.argv[2], "w"))
+END
+settings='--size 96x54 --lights 8 --background 0.2,0.3,0.4'
+exits 0 'export' "$peel" scenes crossing.gltf --export contract $settings
+exits 0 'foreign' "$foreign/foreign" contract foreign.png foreign.peel
+exits 0 'foreign, right' "$peel" diagnose crossing.gltf foreign.png $settings
+for mistake in not-premultiplied over-front-to-back opaque-depth-ignored background-forgotten \
+    layers-reversed; do
+    exits 0 "foreign, $mistake" "$foreign/foreign_$(echo $mistake | tr - _)" contract foreign.png \
+        foreign.peel
+    exits 2 "foreign, $mistake" "$peel" diagnose crossing.gltf foreign.png $settings \
+        --json out.json
+    check "foreign, $mistake, is first" test "$(key ranking 0 name)" = $mistake
+    check "foreign, $mistake, exactly" test "$(key ranking 0 exact)" = True
+done
+
 # --- the least there is ---
+settings='--size 64x48'
 "$peel" render tutorial --size 1x1 --lights 0 -o one.png >/dev/null
 exits 0 'one pixel without lights' "$peel" diagnose tutorial one.png --size 1x1 --lights 0
 "$peel" render tutorial $settings --opacity 1 -o opaque.png >/dev/null
