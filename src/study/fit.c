@@ -12,6 +12,9 @@
 #define CODE_SLACK     0.01 /* codes: another power function rounds otherwise */
 #define FLOAT_ROUNDING 1e-6 /* of values; of colours that are black all but: of FLOAT_BLACK */
 #define FLOAT_BLACK    0.1
+enum {
+    PHASES = 8 /* rows are measured in so many parts, after each of which a bad form is left */
+};
 
 /* ---- forms ----------------------------------------------------------------------------------- */
 
@@ -69,27 +72,23 @@ static double encode(const Encoding *form, double color)
     return given_stored_value(form->format, GIVEN_LINEAR, twice);
 }
 
-static Result encode_row(void *context, uint32_t row, int worker)
+/* Alpha stays coverage. Neighbours often have the same colour. */
+static void encode_row(const Encoding *form, int row)
 {
-    const Encoding *encoding = context;
-    const float *in = image_pixel(encoding->final, 0, (int)row);
-    float *out = image_pixel(encoding->out, 0, (int)row);
-    (void)worker;
-    for (int x = 0; x < encoding->final->width; x++, in += 4, out += 4) {
+    const float *in = image_pixel(form->final, 0, row);
+    float *out = image_pixel(form->out, 0, row);
+    for (int x = 0; x < form->final->width; x++, in += 4, out += 4) {
         for (int c = 0; c < 3; c++)
-            out[c] = (float)encode(encoding, (double)in[c]);
+            out[c] = x > 0 && in[c] == in[c - 4] ? out[c - 4] : (float)encode(form, (double)in[c]);
         out[3] = in[3];
     }
-    return RESULT_OK;
 }
 
-/* Alpha stays coverage. */
-static Result encode_image(Fit *fit, const FitRendering *rendering, GivenEncoding encoding,
-                           Image *out)
+static Encoding encoding_of(Fit *fit, const FitRendering *rendering, GivenEncoding encoding,
+                            Image *out)
 {
-    Encoding all = {fit->given->stored.format, encoding, rendering->encoded_twice, rendering->final,
-                    out};
-    return pool_run(fit->pool, (uint32_t)out->height, encode_row, &all);
+    return (Encoding){fit->given->stored.format, encoding, rendering->encoded_twice,
+                      rendering->final, out};
 }
 
 int fit_channels(const GivenMeaning *form)
@@ -157,21 +156,21 @@ static PixelResidual residual_of(const Fit *fit, const GivenMeaning *form, const
 typedef struct Measuring {
     Fit *fit;
     GivenMeaning form;
+    Encoding encoding;
     FitResult *rows; /* counts of each */
+    uint32_t phase;
 } Measuring;
 
-static Result measure_row(void *context, uint32_t row, int worker)
+static void measure_row(const Measuring *measuring, int row)
 {
-    Measuring *measuring = context;
     Fit *fit = measuring->fit;
     FitResult *out = &measuring->rows[row];
     int width = fit->encoded.width;
     float *residuals = fit->residuals + (size_t)row * (size_t)width;
-    (void)worker;
     for (int x = 0; x < width; x++) {
         PixelResidual residual =
-            residual_of(fit, &measuring->form, fit_theirs(fit, &measuring->form, x, (int)row),
-                        image_pixel(&fit->encoded, x, (int)row));
+            residual_of(fit, &measuring->form, fit_theirs(fit, &measuring->form, x, row),
+                        image_pixel(&fit->encoded, x, row));
         double counts = fit->tolerant ? residual.tolerant : residual.quantised;
         residuals[x] = (float)counts;
         counts = fmin(counts, fit->cap);
@@ -180,23 +179,49 @@ static Result measure_row(void *context, uint32_t row, int worker)
         out->far += residual.tolerant > 0.0;
         out->far_rgb += residual.far_rgb;
     }
+}
+
+/* Rows are encoded when they are first measured. */
+static Result measure_task(void *context, uint32_t index, int worker)
+{
+    const Measuring *measuring = context;
+    uint32_t row = measuring->phase + PHASES * index;
+    uint8_t *encoded = &measuring->fit->encoded_rows[row];
+    (void)worker;
+    if (*encoded != (uint8_t)measuring->form.encoding)
+        encode_row(&measuring->encoding, (int)row);
+    *encoded = (uint8_t)measuring->form.encoding;
+    measure_row(measuring, (int)row);
     return RESULT_OK;
 }
 
-/* fit->encoded, which is in the form's encoding; fills fit->residuals. */
-static Result measure_form(Fit *fit, const GivenMeaning *form, FitResult *out)
+static void add_rows(const Measuring *measuring, uint32_t rows, FitResult *out)
 {
-    size_t rows = (size_t)fit->encoded.height;
-    Measuring measuring = {fit, *form, memory_array(rows, sizeof(FitResult))};
-    if (!measuring.rows)
-        return RESULT_NO_MEMORY;
-    Result result = pool_run(fit->pool, (uint32_t)rows, measure_row, &measuring);
+    for (uint32_t row = measuring->phase; row < rows; row += PHASES) {
+        out->squares += measuring->rows[row].squares;
+        out->beyond += measuring->rows[row].beyond;
+        out->far += measuring->rows[row].far;
+        out->far_rgb += measuring->rows[row].far_rgb;
+    }
+}
+
+/* Ends as soon as the squares are more than limit: squares can only grow. Fills fit->residuals if
+ * it does not. */
+static Result measure_form(Fit *fit, const FitRendering *rendering, const GivenMeaning *form,
+                           double limit, FitResult *out)
+{
+    uint32_t rows = (uint32_t)fit->encoded.height;
+    Measuring measuring = {fit, *form, encoding_of(fit, rendering, form->encoding, &fit->encoded),
+                           memory_array(rows, sizeof(FitResult)), 0};
+    Result result = measuring.rows ? RESULT_OK : RESULT_NO_MEMORY;
     *out = (FitResult){.form = *form};
-    for (size_t i = 0; i < rows; i++) {
-        out->squares += measuring.rows[i].squares;
-        out->beyond += measuring.rows[i].beyond;
-        out->far += measuring.rows[i].far;
-        out->far_rgb += measuring.rows[i].far_rgb;
+    for (; measuring.phase < PHASES && measuring.phase < rows; measuring.phase++) {
+        if (result != RESULT_OK || out->squares > limit)
+            break;
+        uint32_t count = (rows - measuring.phase + PHASES - 1) / PHASES;
+        result = pool_run(fit->pool, count, measure_task, &measuring);
+        if (result == RESULT_OK)
+            add_rows(&measuring, rows, out);
     }
     free(measuring.rows);
     return result;
@@ -219,24 +244,27 @@ static bool better(const FitResult *a, const FitResult *b)
 
 Result fit_measure(Fit *fit, const FitRendering *rendering, FitResult *out)
 {
-    FitResult usual = {0}, best = {0};
+    FitResult usual, best;
     Result result = check_size(fit, rendering);
-    for (int i = 0; i < fit->form_count && result == RESULT_OK; i++) {
-        const GivenMeaning *form = &fit->forms[i];
+    memset(fit->encoded_rows, GIVEN_ENCODING_DETECT, (size_t)fit->encoded.height);
+    if (result == RESULT_OK)
+        result = measure_form(fit, rendering, &fit->forms[0], INFINITY, &usual);
+    if (result != RESULT_OK)
+        return result;
+    best = usual;
+    double limit = MUCH_BETTER * usual.squares;
+    for (int i = 1; i < fit->form_count && best.beyond > 0; i++) {
         FitResult one;
-        if (i == 0 || form->encoding != fit->forms[i - 1].encoding)
-            result = encode_image(fit, rendering, form->encoding, &fit->encoded);
-        if (result == RESULT_OK)
-            result = measure_form(fit, form, &one);
+        result = measure_form(fit, rendering, &fit->forms[i], limit, &one);
         if (result != RESULT_OK)
-            break;
-        if (i == 0)
-            usual = best = one;
-        else if (better(&one, &best))
+            return result;
+        if (one.squares <= limit && better(&one, &best)) {
             best = one;
+            limit = one.squares;
+        }
     }
-    *out = best.squares <= MUCH_BETTER * usual.squares ? best : usual;
-    return result;
+    *out = best;
+    return RESULT_OK;
 }
 
 /* ---- what counts ----------------------------------------------------------------------------- */
@@ -269,9 +297,8 @@ Result fit_reference(Fit *fit, const FitRendering *rendering, FitResult *out)
         return result;
     fit->tolerant = out->far > pixels / FIT_FEW;
     GivenMeaning form = out->form;
-    result = encode_image(fit, rendering, form.encoding, &fit->encoded);
-    if (result == RESULT_OK)
-        result = measure_form(fit, &form, out);
+    memset(fit->encoded_rows, GIVEN_ENCODING_DETECT, (size_t)fit->encoded.height);
+    result = measure_form(fit, rendering, &form, INFINITY, out);
     if (result != RESULT_OK)
         return result;
     double scale = median(fit->residuals, pixels);
@@ -288,8 +315,10 @@ Result fit_predict(Fit *fit, const FitRendering *rendering, const GivenMeaning *
     Result result = check_size(fit, rendering);
     if (result == RESULT_OK)
         result = image_create(fit->theirs.width, fit->theirs.height, FORMAT_RGBA32F, out);
-    if (result == RESULT_OK)
-        result = encode_image(fit, rendering, form->encoding, out);
+    for (int y = 0; result == RESULT_OK && y < out->height; y++) {
+        Encoding encoding = encoding_of(fit, rendering, form->encoding, out);
+        encode_row(&encoding, y);
+    }
     float *pixel = out->pixels;
     for (size_t i = 0; result == RESULT_OK && i < (size_t)out->width * (size_t)out->height; i++)
         pixel[4 * i + 3] =
@@ -358,7 +387,8 @@ Result fit_create(const GivenImage *given, const GivenMeaning *options, Pool *po
     if (result == RESULT_OK) {
         out->residuals =
             memory_array((size_t)stored->width * (size_t)stored->height, sizeof *out->residuals);
-        result = out->residuals ? RESULT_OK : RESULT_NO_MEMORY;
+        out->encoded_rows = memory_array((size_t)stored->height, 1);
+        result = out->residuals && out->encoded_rows ? RESULT_OK : RESULT_NO_MEMORY;
     }
     if (result != RESULT_OK)
         fit_free(out);
@@ -370,5 +400,6 @@ void fit_free(Fit *fit)
     image_free(&fit->theirs);
     image_free(&fit->encoded);
     free(fit->residuals);
+    free(fit->encoded_rows);
     *fit = (Fit){0};
 }

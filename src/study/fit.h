@@ -30,11 +30,12 @@ typedef struct Fit {
     Pool *pool;
     GivenMeaning forms[FIT_FORMS]; /* to choose from, the usual one first */
     int form_count;
-    Image theirs;     /* FORMAT_RGBA32F: the stored values as numbers, rows as in the file */
-    Image encoded;    /* scratch: FORMAT_RGBA32F, a rendering in one encoding */
-    float *residuals; /* scratch: one per pixel */
-    bool tolerant;    /* what is within the tolerance counts as 0 */
-    double cap;       /* a pixel's residual counts up to this */
+    Image theirs;          /* FORMAT_RGBA32F: the stored values as numbers, rows as in the file */
+    Image encoded;         /* scratch: FORMAT_RGBA32F, a rendering in one encoding */
+    uint8_t *encoded_rows; /* a GivenEncoding for each of its rows, DETECT before */
+    float *residuals;      /* scratch: one per pixel */
+    bool tolerant;         /* what is within the tolerance counts as 0 */
+    double cap;            /* a pixel's residual counts up to this */
 } Fit;
 
 /* A rendering. encoded_twice: of MUTATION_SRGB_ENCODED_TWICE, which a linear image shows, and an

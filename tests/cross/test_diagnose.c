@@ -25,7 +25,7 @@ static void choose(void)
     bool full = getenv("PEEL_TEST_FULL") != NULL;
     scenes = full ? full_scenes : ci_scenes;
     scene_count = full ? SCENES_MOST : 2;
-    desc = (RenderDesc){.width = full ? 160 : 48, .height = full ? 120 : 36, .lights = 8};
+    desc = (RenderDesc){.width = full ? 96 : 48, .height = full ? 72 : 36, .lights = 8};
 }
 
 /* ---- the table ---- */

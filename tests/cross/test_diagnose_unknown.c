@@ -20,7 +20,7 @@ static void choose(void)
     bool full = getenv("PEEL_TEST_FULL") != NULL;
     scene_count = full ? 8 : 2;
     other_count = full ? 4 : 1;
-    desc = (RenderDesc){.width = full ? 160 : 48, .height = full ? 120 : 36, .lights = 8};
+    desc = (RenderDesc){.width = full ? 96 : 48, .height = full ? 72 : 36, .lights = 8};
 }
 
 static size_t pixel_count(void)
