@@ -109,8 +109,10 @@ static int run(DiagnoseCommand *command)
     Result result = check(command);
     if (result == RESULT_OK)
         result = given_load(command->image, &given);
-    if (result != RESULT_OK)
+    if (result != RESULT_OK) {
+        given_free(&given);
         return options_fail(result);
+    }
     result = options_load_scene(&command->render, &scene);
     if (result == RESULT_OK) {
         code = options_given_size(command->image, &given, command->render.desc.width,

@@ -13,12 +13,15 @@ enum {
 };
 
 static const struct argp_option given_options[] = {
-    {"encoding", KEY_ENCODING, "linear|srgb|seed", 0,
-     "What the image's colours are (seed: c/(c + 1) to the power 1/2.2; default: found out)", 0},
-    {"flip", KEY_FLIP, 0, 0, "The image's first row is the lowest", 0},
-    {"no-flip", KEY_NO_FLIP, 0, 0, "The image's first row is the highest (default: found out)", 0},
-    {"alpha", KEY_ALPHA, "none|coverage|transmittance", 0,
-     "What the image's alpha is (default: found out)", 0},
+    {"encoding", KEY_ENCODING, "NAME", 0,
+     "Of their colours: linear, srgb, or seed (the display transform of peel render); default: "
+     "found out",
+     0},
+    {"flip", KEY_FLIP, 0, 0, "The first row of their files is the bottom one (default: found out)",
+     0},
+    {"no-flip", KEY_NO_FLIP, 0, 0, "... is the top one", 0},
+    {"alpha", KEY_ALPHA, "NAME", 0,
+     "Of their image: none, coverage or transmittance (default: found out)", 0},
     {0},
 };
 

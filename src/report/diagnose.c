@@ -95,9 +95,16 @@ void report_diagnose_why(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE])
                  far, pixels, 100.0 * diagnosis->rows[0].explains);
         break;
     case DIAGNOSE_NOTHING:
-        snprintf(out, DIAGNOSE_LINE,
-                 "%s of %s pixels differ from the reference; a mistake is named from %.0f %% on.",
-                 far, pixels, 100.0 * DIAGNOSE_EXPLAINS);
+        if (diagnosis->nonfinite == diagnosis->pixels)
+            snprintf(out, DIAGNOSE_LINE, "Every pixel is NaN or infinite.");
+        else if (diagnosis->nonfinite)
+            snprintf(out, DIAGNOSE_LINE, "%s of %s pixels are NaN or infinite, %s differ.",
+                     summary_count(diagnosis->nonfinite, beyond), pixels, far);
+        else
+            snprintf(
+                out, DIAGNOSE_LINE,
+                "%s of %s pixels differ from the reference; a mistake is named from %.0f %% on.",
+                far, pixels, 100.0 * DIAGNOSE_EXPLAINS);
         break;
     }
 }
@@ -154,7 +161,8 @@ static void print_ranking(const Diagnosis *diagnosis, FILE *out)
         fprintf(out, "%3d%c %8.2f%% %12s  %s\n", row->rank, equal ? '=' : ' ',
                 100.0 * row->explains, summary_count(row->beyond, left),
                 diagnose_name(row->mutations, name));
-        print_causes(row->mutations, "                             ", out);
+        if (row->rank == 1)
+            print_causes(row->mutations, "                             ", out);
     }
     if (diagnosis->equals > 1)
         fprintf(out,

@@ -407,8 +407,6 @@ static Result check(const RenderDesc *desc, const GivenImage *given)
     if (desc->mutations || !obeys(desc->method))
         return result_fail(RESULT_BAD_INPUT, "diagnose: the catalogue of mistakes is of depth "
                                              "peeling, expected --method peel or forward");
-    if (given->nonfinite == (uint64_t)given->stored.width * (uint64_t)given->stored.height)
-        return result_fail(RESULT_BAD_INPUT, "no pixel of the image is finite, expected numbers");
     if (given->stored.width != desc->width || given->stored.height != desc->height)
         return result_fail(RESULT_INTERNAL, "diagnose: expected an image of the size rendered");
     return RESULT_OK;
@@ -460,6 +458,7 @@ Result diagnose_run(const Scene *scene, const RenderDesc *desc, const GivenImage
                     const GivenMeaning *options, Renderer ref, Diagnosis *out)
 {
     *out = (Diagnosis){.format = given->stored.format,
+                       .nonfinite = given->nonfinite,
                        .pixels = (uint64_t)desc->width * (uint64_t)desc->height};
     Result result = check(desc, given);
     if (result != RESULT_OK)

@@ -66,6 +66,7 @@ typedef struct Diagnosis {
     PixelFormat format;  /* of their file */
     char described[128];          /* their file and what it was taken for */
     uint64_t pixels, beyond, far; /* of the reference: beyond quantisation, beyond the tolerance */
+    uint64_t nonfinite;           /* theirs that are NaN or infinite: no rendering explains them */
     DiagnoseRow *rows;            /* by rank; mistakes that change nothing here left out */
     size_t count, equals;         /* equals: how many share the first rank */
     uint64_t invisible;           /* mistakes that change nothing of what their file holds */

@@ -92,6 +92,11 @@ check 'unknown' test "$(key verdict)" = unknown
 check 'the last word' test "$(tail -1 output)" = UNKNOWN
 check 'a ranking' test "$(key ranking -1 explains | cut -c1)" = 0
 
+oiiotool right.exr --mulc nan -o nan.exr
+exits 2 'all NaN' "$peel" diagnose tutorial nan.exr $settings --json out.json --report page
+check 'NaN is unknown' test "$(key verdict)" = unknown
+check 'NaN is said' grep -qx 'Every pixel is NaN or infinite.' output
+
 # --- bad input: one line, the right code ---
 refused() {
     code=$1
@@ -105,7 +110,6 @@ head -c 300 right.exr >short.exr
 echo text >text.png
 "$peel" render tutorial $settings --trace trace.exr >/dev/null
 python3 - <<'END'
-import struct
 data = bytearray(open("right.exr", "rb").read())
 open("none.exr", "wb").write(data.replace(b"R\0\2\0\0\0", b"Q\0\2\0\0\0"))
 END

@@ -6,6 +6,7 @@
 #include "planted.h"
 
 #include "ref/truth/truth.h"
+#include "study/fit.h"
 
 #include <stdio.h>
 
@@ -82,6 +83,33 @@ static void expect_forms(const Scene *scene, const Frame *frame)
                 }
 }
 
+/* Alpha that is neither of its meanings: the colours decide, and it is said. */
+static void expect_strange_alpha(const Scene *scene, const Frame *frame)
+{
+    GivenImage given = planted_given(frame, PLANTED_EXR);
+    float *pixel = given.stored.pixels;
+    Diagnosis diagnosis;
+    for (size_t i = 0; i < pixel_count(); i++)
+        pixel[4 * i + 3] = (float)(i % 7);
+    planted_diagnose(scene, &desc, &given, &diagnosis);
+    ck_assert_int_eq(diagnosis.verdict, DIAGNOSE_AGREES);
+    ck_assert_int_eq(diagnosis.reason, DIAGNOSE_COLORS);
+    diagnose_free(&diagnosis);
+    given_free(&given);
+}
+
+/* A few pixels may be anything in a right image; one more may not. */
+static void expect_few(const Scene *scene, const Frame *frame)
+{
+    for (size_t extra = 0; extra < 2; extra++) {
+        GivenImage given = planted_given(frame, PLANTED_PNG);
+        size_t count = pixel_count() / FIT_FEW + extra;
+        for (size_t i = 0; i < count; i++)
+            ((uint8_t *)given.stored.pixels)[4 * (37 * i + 5)] ^= 0x80;
+        expect(scene, &given, extra ? DIAGNOSE_UNKNOWN : DIAGNOSE_AGREES, "a few pixels");
+    }
+}
+
 START_TEST(test_right)
 {
     choose();
@@ -89,8 +117,11 @@ START_TEST(test_right)
         Scene scene;
         planted_scene(scenes[s], &scene);
         const Frame *frame = planted_frame(&scene, &desc);
-        if (s == 0)
+        if (s == 0) {
             expect_forms(&scene, frame);
+            expect_strange_alpha(&scene, frame);
+            expect_few(&scene, frame);
+        }
         Frame truth;
         planted_ok(truth_render(&scene, &desc, NULL, &truth));
         RenderDesc unfused = desc;
