@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "cli/bind.h"
 #include "cli/options.h"
+#include "cli/options_given.h"
 #include "frame/method.h"
 #include "report/check.h"
 
@@ -20,11 +21,7 @@ typedef struct CheckCommand {
 } CheckCommand;
 
 enum {
-    KEY_ENCODING = 0x200,
-    KEY_FLIP,
-    KEY_NO_FLIP,
-    KEY_ALPHA,
-    KEY_LAYER,
+    KEY_LAYER = 0x200,
     KEY_DEPTH_FILE,
     KEY_TOLERANCE,
     KEY_BOUND,
@@ -33,15 +30,6 @@ enum {
 };
 
 static const struct argp_option command_options[] = {
-    {"encoding", KEY_ENCODING, "NAME", 0,
-     "Of their colours: linear, srgb, or seed (the display transform of peel render); default: "
-     "found out",
-     0},
-    {"flip", KEY_FLIP, 0, 0, "The first row of their files is the bottom one (default: found out)",
-     0},
-    {"no-flip", KEY_NO_FLIP, 0, 0, "... is the top one", 0},
-    {"alpha", KEY_ALPHA, "NAME", 0,
-     "Of their image: none, coverage or transmittance (default: found out)", 0},
     {"layer", KEY_LAYER, "K FILE", 0,
      "Also compare their accumulation after peel K (from 0), or with forward methods the layer's "
      "colour",
@@ -58,26 +46,6 @@ static const struct argp_option command_options[] = {
     {"report", KEY_REPORT, "DIR", 0, "Write a page with pictures to DIR/index.html", 0},
     {0},
 };
-
-static error_t parse_encoding(const char *text, GivenMeaning *out)
-{
-    for (int e = GIVEN_LINEAR; e <= GIVEN_SEED; e++)
-        if (strcmp(text, given_encoding_name((GivenEncoding)e)) == 0) {
-            out->encoding = (GivenEncoding)e;
-            return 0;
-        }
-    return options_error("--encoding %s: expected linear, srgb or seed", text);
-}
-
-static error_t parse_alpha(const char *text, GivenMeaning *out)
-{
-    for (int a = GIVEN_ALPHA_NONE; a <= GIVEN_TRANSMITTANCE; a++)
-        if (strcmp(text, given_alpha_name((GivenAlpha)a)) == 0) {
-            out->alpha = (GivenAlpha)a;
-            return 0;
-        }
-    return options_error("--alpha %s: expected none, coverage or transmittance", text);
-}
 
 /* K, and the next word of the line. */
 static error_t parse_file(const char *option, bool depth, const char *text,
@@ -117,16 +85,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     CheckCommand *command = state->input;
     switch (key) {
-    case KEY_ENCODING:
-        return parse_encoding(argument, &command->meaning);
-    case KEY_FLIP:
-        command->meaning.rows = GIVEN_BOTTOM_UP;
-        return 0;
-    case KEY_NO_FLIP:
-        command->meaning.rows = GIVEN_TOP_DOWN;
-        return 0;
-    case KEY_ALPHA:
-        return parse_alpha(argument, &command->meaning);
     case KEY_LAYER:
         return parse_file("--layer", false, argument, state, command);
     case KEY_DEPTH_FILE:
@@ -150,13 +108,15 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return parse_argument(argument, command);
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;
+        state->child_inputs[1] = &command->meaning;
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static const struct argp_child children[] = {{&options_render_argp, 0, NULL, 1}, {0}};
+static const struct argp_child children[] = {
+    {&options_render_argp, 0, NULL, 1}, {&options_given_argp, 0, NULL, 0}, {0}};
 static const struct argp command_argp = {
     command_options,
     parse,

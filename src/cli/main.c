@@ -21,6 +21,7 @@ static const Command commands[] = {
     {"bench", "speed against error, over scenes, passes, lights, threads and more", cmd_bench},
     {"check", "somebody's image or passes against the reference", cmd_check},
     {"compare", "all three renderers; table, JSON, report", cmd_compare},
+    {"diagnose", "which known mistake explains an image by another program", cmd_diagnose},
     {"diff", "two images or traces: idiff's figures and exit codes, and ULP", cmd_diff},
     {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
     {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
