@@ -204,7 +204,7 @@ static Result write_json(const ContractDesc *contract, const View *view, const c
     document_put(&json, root, "width", json_integer(view->width));
     document_put(&json, root, "height", json_integer(view->height));
     document_put(&json, root, "passes", json_integer(contract->desc.passes));
-    document_put(&json, root, "check", document_text(contract->check));
+    document_put(&json, root, "check", document_string(contract->check));
     document_put(&json, root, "settings", make_settings(&json, contract));
     put_scene(&json, root, contract, view);
     return document_write(&json, root, path);
