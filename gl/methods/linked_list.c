@@ -14,10 +14,10 @@
  * pass puts the front node at the head. That is a pass of its own because llvmpipe 22.3.6 looks up
  * wrong materials in a loop behind one whose lanes leave at different turns.
  *
- * Without desc->nodes_per_pixel the buffer has room for NODES_GUESSED nodes a pixel, and when the counter
- * shows that there are more, for as many as there are: then geometry was drawn twice. The buffer
- * may be larger than the driver promises to reach in a block: llvmpipe says 2^27 bytes and reaches
- * all. So the last node is read back, and where it was not stored the frame is refused. */
+ * Without desc->nodes_per_pixel the buffer has room for NODES_GUESSED nodes a pixel, and when the
+ * counter shows that there are more, for as many as there are: then geometry was drawn twice. The
+ * buffer may be larger than the driver promises to reach in a block: llvmpipe says 2^27 bytes and
+ * reaches all. So the last node is read back, and where it was not stored the frame is refused. */
 #include "methods/methods.h"
 
 #include "base/progress.h"

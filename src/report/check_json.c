@@ -76,7 +76,8 @@ Result report_check_json(const CheckReport *report, const char *path)
     report_check_hint(report, hint, sizeof hint);
     document_put(&json, root, "verdict", json_string(report->agree ? "agrees" : "differs"));
     document_put(&json, root, "scene", document_string(report->scene_path));
-    document_put(&json, root, "theirs", report->theirs ? document_string(report->theirs) : json_null());
+    document_put(&json, root, "theirs",
+                 report->theirs ? document_string(report->theirs) : json_null());
     document_put(&json, root, "width", json_integer(desc->width));
     document_put(&json, root, "height", json_integer(desc->height));
     document_put(&json, root, "method", json_string(method_info(desc->method)->name));

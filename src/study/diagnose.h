@@ -63,7 +63,7 @@ typedef struct Diagnosis {
     DiagnoseVerdict verdict;
     DiagnoseReason reason;
     GivenMeaning form;            /* of the best mistake; else of the reference */
-    PixelFormat format;  /* of their file */
+    PixelFormat format;           /* of their file */
     char described[128];          /* their file and what it was taken for */
     uint64_t pixels, beyond, far; /* of the reference: beyond quantisation, beyond the tolerance */
     uint64_t nonfinite;           /* theirs that are NaN or infinite: no rendering explains them */

@@ -54,8 +54,8 @@ typedef struct Threeway {
     StructureReport structure;
     uint64_t nonfinite; /* values in all of ref's buffers that are NaN or infinite */
     PeelPicture *peels;
-    size_t peel_count; /* pictures kept, at most PEEL_PICTURES_MAX */
-    bool agree;        /* the verdict: exit code 0 */
+    size_t peel_count;    /* pictures kept, at most PEEL_PICTURES_MAX */
+    bool agree;           /* the verdict: exit code 0 */
     const Budget *budget; /* NULL: not asked for; the caller's */
 } Threeway;
 

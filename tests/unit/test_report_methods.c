@@ -132,8 +132,9 @@ START_TEST(test_verdict)
     assert_contains(text, "2 of 10 methods differ<");
     assert_contains(text, "<li>dual: ref and gl differ in 17 of ");
     assert_contains(text, "<li>linked-list: ref and truth differ: 99th percentile ");
-    assert_contains(text, "<li>linked-list: The lists need 123,456 nodes x 20 bytes = 2.4 MiB; there "
-                          "was no room for 9 of them.</li>");
+    assert_contains(text,
+                    "<li>linked-list: The lists need 123,456 nodes x 20 bytes = 2.4 MiB; there "
+                    "was no room for 9 of them.</li>");
     ck_assert_int_eq(occurrences("<tr class=\"off\">"), 2);
     ck_assert_int_eq(occurrences(">differs</td>"), 2);
 }
