@@ -103,7 +103,7 @@ static void expect_few(const Scene *scene, const Frame *frame)
 {
     for (size_t extra = 0; extra < 2; extra++) {
         GivenImage given = planted_given(frame, PLANTED_PNG);
-        size_t count = pixel_count() / FIT_FEW + extra;
+        size_t count = pixel_count() / FIT_FEW_FAR + extra;
         for (size_t i = 0; i < count; i++)
             ((uint8_t *)given.stored.pixels)[4 * (37 * i + 5)] ^= 0x80;
         expect(scene, &given, extra ? DIAGNOSE_UNKNOWN : DIAGNOSE_AGREES, "a few pixels");
@@ -462,7 +462,7 @@ START_TEST(test_outliers)
     for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
         GivenImage given = planted_mistake(&scene, &desc, mutation_bit(ids[i]), PLANTED_EXR);
         float *pixel = given.stored.pixels;
-        for (size_t j = 0; j < pixel_count() / FIT_FEW; j++)
+        for (size_t j = 0; j < pixel_count() / FIT_FEW_FAR; j++)
             pixel[4 * (401 * j + 17)] = 50.0f;
         Diagnosis diagnosis;
         planted_diagnose(&scene, &desc, &given, &diagnosis);
