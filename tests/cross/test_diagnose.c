@@ -9,8 +9,9 @@
 /* What makes more of the mistakes visible. */
 typedef enum Variant {
     AS_IT_IS = 0,
-    FIRST_OPAQUE, /* the first instance is opaque: it hides some of the others */
-    DEPTH_24,     /* settings: another program may well have them */
+    HALF_OPAQUE, /* every other instance is opaque: they hide some of the others */
+    DEPTH_24,    /* settings: another program may well have them */
+    DEPTH_16,
     DEPTH_REVERSED
 } Variant;
 
@@ -19,8 +20,8 @@ typedef struct Column {
     Variant variant;
 } Column;
 
-static const char *const variant_names[] = {"", ", first instance opaque", ", --depth d24",
-                                            ", --depth-range reversed"};
+static const char *const variant_names[] = {"", ", every other instance opaque", ", --depth d24",
+                                            ", --depth d16", ", --depth-range reversed"};
 static const Column ci_columns[] = {{"tutorial", AS_IT_IS}, {"inside_glass", AS_IT_IS}};
 static const Column full_columns[] = {
     {"teapot_hall", AS_IT_IS},
@@ -43,13 +44,16 @@ static const Column full_columns[] = {
     {"near_far_wide", DEPTH_REVERSED},
     {"crossing_nearly_coplanar", DEPTH_REVERSED},
     {"far_infinite", DEPTH_REVERSED},
-    {"chain", FIRST_OPAQUE},
-    {"crossing_planes", FIRST_OPAQUE},
-    {"tutorial", FIRST_OPAQUE},
+    {"chain", HALF_OPAQUE},
+    {"crossing_planes", HALF_OPAQUE},
+    {"tutorial", HALF_OPAQUE},
     {"raw_24", DEPTH_24},
-    {"tutorial", DEPTH_24},
-    {"thin_shells", DEPTH_24},
-    {"teapot_hall_stress", DEPTH_24},
+    {"tutorial", DEPTH_16},
+    {"thin_shells", DEPTH_16},
+    {"teapot_hall_stress", DEPTH_16},
+    {"at_opaque_depth", DEPTH_24},
+    {"at_opaque_depth", DEPTH_16},
+    {"at_opaque_depth", DEPTH_REVERSED},
 };
 enum {
     COLUMNS_FULL = sizeof full_columns / sizeof full_columns[0]
@@ -70,9 +74,11 @@ static void choose(void)
 static void open_column(const Column *column, Scene *out)
 {
     planted_scene(column->scene, out);
-    if (column->variant == FIRST_OPAQUE)
-        out->materials[out->instances[0].material].alpha_mode = ALPHA_OPAQUE;
-    desc.depth = column->variant == DEPTH_24 ? FORMAT_D24 : FORMAT_RGBA32F;
+    for (size_t i = 0; column->variant == HALF_OPAQUE && i < out->instance_count; i += 2)
+        out->materials[out->instances[i].material].alpha_mode = ALPHA_OPAQUE;
+    desc.depth = column->variant == DEPTH_24   ? FORMAT_D24
+                 : column->variant == DEPTH_16 ? FORMAT_D16
+                                               : FORMAT_RGBA32F;
     desc.depth_range = column->variant == DEPTH_REVERSED ? DEPTH_RANGE_REVERSED : DEPTH_RANGE_GL;
 }
 
