@@ -131,11 +131,12 @@ void fold_value(Fold *fold, int index, uint32_t sample, uint32_t a_bits, uint32_
     double a = planes_value(from->kind[0], from->unorm_max[0], a_bits);
     double b = planes_value(from->kind[1], from->unorm_max[1], b_bits);
     double error = error_of(a, b);
+    bool finite = isfinite(a) && isfinite(b);
     uint32_t ulp = distance_of(from, bits, a, b);
     channel->values++;
     count_nonfinite(fold->part, channel, 0, a);
     count_nonfinite(fold->part, channel, 1, b);
-    if (isfinite(a) && isfinite(b))
+    if (finite)
         add_error(fold, index, a, b);
     if (isinf(error))
         fold->broken = true;

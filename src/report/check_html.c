@@ -110,33 +110,45 @@ static void put_pictures(FileWriter *page, const CheckReport *report)
 static void put_step(FileWriter *page, const CheckStep *step)
 {
     const JudgeFigures *f = &step->figures;
-    char worst[512] = "";
-    html_open_row(page, step->agree ? "" : " class=\"differ\"", step->name);
-    if (!step->judged) {
-        file_writer_print(page, "<td colspan=\"8\">");
-        html_text(page, step->note);
-        file_writer_print(page, "</td></tr>\n");
-        return;
-    }
     const uint64_t counts[] = {f->equal, f->stored, f->within, f->edge, f->beyond};
+    html_open_row(page, step->agree ? "" : " class=\"differ\"", step->name);
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
-        file_writer_print(page, "<td>%llu</td>", (unsigned long long)counts[i]);
-    if (f->worst.is && !step->agree)
+        if (step->judged)
+            file_writer_print(page, "<td>%llu</td>", (unsigned long long)counts[i]);
+        else
+            file_writer_print(page, "<td>&ndash;</td>");
+    if (step->judged)
+        file_writer_print(page, "<td>%.3g</td><td>%s</td></tr>\n", f->max_abs,
+                          step->agree ? "agrees" : "differs");
+    else
+        file_writer_print(page, "<td>&ndash;</td><td>%s</td></tr>\n",
+                          step->agree ? "not compared" : "differs");
+}
+
+/* What does not fit into a row: notes, and the worst pixels of what differs. */
+static void put_remarks(FileWriter *page, const CheckReport *report)
+{
+    char worst[512], line[640];
+    file_writer_print(page, "<ul>\n");
+    for (size_t i = 0; i < report->step_count; i++) {
+        const CheckStep *step = &report->steps[i];
+        if (step->note[0]) {
+            snprintf(line, sizeof line, "%s: %s", step->name, step->note);
+            html_item(page, line);
+        }
+        if (step->agree || !step->judged || !step->figures.worst.is)
+            continue;
         check_describe_worst(step, worst, sizeof worst);
-    file_writer_print(page, "<td>%.3g</td><td>%s</td><td class=\"text\">", f->max_abs,
-                      step->agree ? "agrees" : "differs");
-    html_text(page, worst);
-    if (step->note[0]) {
-        file_writer_print(page, "%s", worst[0] ? "<br>" : "");
-        html_text(page, step->note);
+        snprintf(line, sizeof line, "%s: worst %s", step->name, worst);
+        html_item(page, line);
     }
-    file_writer_print(page, "</td></tr>\n");
+    file_writer_print(page, "</ul>\n");
 }
 
 static void put_table(FileWriter *page, const CheckReport *report)
 {
-    static const char *const columns[] = {"Step",   "Equal",   "Stored",  "Within",     "Edge",
-                                          "Beyond", "Max abs", "Verdict", "Worst pixel"};
+    static const char *const columns[] = {"Step", "Equal",  "Stored",  "Within",
+                                          "Edge", "Beyond", "Max abs", "Verdict"};
     file_writer_print(page, "<section aria-labelledby=\"steps\">\n<h2 id=\"steps\">Step by step"
                             "</h2>\n");
     html_open_table(page, "Pixels of each buffer, in the order of the algorithm", columns,
@@ -144,6 +156,7 @@ static void put_table(FileWriter *page, const CheckReport *report)
     for (size_t i = 0; i < report->step_count; i++)
         put_step(page, &report->steps[i]);
     html_close_table(page);
+    put_remarks(page, report);
     file_writer_print(
         page, "<p>Equal: the same bits. Stored: what storing the right value in their format "
               "explains. Within: the tolerance, or with --bound what single precision may do, "

@@ -276,7 +276,7 @@ static Result write_glsl(const ContractDesc *contract, size_t light_count, const
                       "(position; color;\n// attenuation and inverse_range2) in uniform block "
                       "binding 0.\n%s#define LIGHT_COUNT %zu\n%s%s",
                       contract->glsl_constants, light_count,
-                      light_count > 1024 ? "#define LIGHTS_STORAGE\n" : "",
+                      light_count > 341 ? "#define LIGHTS_STORAGE\n" : "",
                       "#define LIGHT_RANGES\n");
     if (contract->desc.shading == SHADING_PHONG)
         file_writer_print(&writer, "#define PHONG\n");

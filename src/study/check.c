@@ -134,7 +134,7 @@ static void sort_steps(CheckStep *steps, size_t count)
     }
 }
 
-static void conclude(CheckReport *report)
+static Result conclude(CheckReport *report)
 {
     bool any = false;
     sort_steps(report->steps, report->step_count);
@@ -144,7 +144,13 @@ static void conclude(CheckReport *report)
         if (!report->steps[i].agree)
             report->first = (int)i;
     }
-    report->agree = report->first < 0 && any;
+    report->agree = report->first < 0;
+    if (any || !report->agree)
+        return RESULT_OK;
+    return result_fail(RESULT_BAD_INPUT,
+                       "%s: the reference has none of its buffers (by --method %s), expected at "
+                       "least one",
+                       report->theirs, method_info(report->desc.method)->name);
 }
 
 static void free_run(CheckRun *run)
@@ -184,8 +190,8 @@ Result check_run(const Scene *scene, const RenderDesc *desc, Renderer ref, Rende
     if (result == RESULT_OK)
         result = check_steps(&run);
     if (result == RESULT_OK)
-        conclude(out);
-    else
+        result = conclude(out);
+    if (result != RESULT_OK)
         check_free(out);
     free_run(&run);
     return result;

@@ -73,6 +73,15 @@ static Result widened_buffer(const TraceStore *store, int index, Image *out)
     return result;
 }
 
+/* Of final colours: what single precision may do to them, where that is asked for. */
+static void allow_bound(const CheckRun *run, JudgeDesc *desc)
+{
+    if (!run->truth.bound.pixels)
+        return;
+    desc->center = &run->truth.final;
+    desc->slack = &run->truth.bound;
+}
+
 /* ---- their image ------------------------------------------------------------------------------
  */
 
@@ -95,10 +104,7 @@ static Result check_image(CheckRun *run)
                       .reference_format = FORMAT_RGBA32F,
                       .channels = reading.meaning.alpha == GIVEN_ALPHA_NONE ? 3 : 4,
                       .tolerance = report->tolerance};
-    if (run->truth.bound.pixels) {
-        desc.center = &run->truth.final;
-        desc.slack = &run->truth.bound;
-    }
+    allow_bound(run, &desc);
     CheckStep *step = add_step(run, INT_MAX, "image");
     result = step ? judge_step(step, &desc) : RESULT_NO_MEMORY;
     image_swap(&report->theirs_image, &reading.linear);
@@ -116,6 +122,7 @@ static void display_desc(const CheckRun *run, JudgeDesc *desc)
     desc->display = &run->report->frame.display;
     desc->encoding = GIVEN_SEED;
     desc->channels = 3;
+    allow_bound(run, desc);
 }
 
 static Result judge_buffer(CheckRun *run, CheckStep *step, int theirs, int reference)
@@ -171,12 +178,15 @@ static int extra_order(const TraceStore *reference)
     return order;
 }
 
-static int peel_count(const TraceStore *store)
+/* Counts buffers that the other has, too. */
+static int peel_count(const TraceStore *store, const TraceStore *other)
 {
     int count = 0;
     for (int i = 0; i < store_count(store); i++) {
-        int peel = trace_name_peel(store_buffer(store, i)->name);
-        count = peel >= count ? peel + 1 : count;
+        const char *name = store_buffer(store, i)->name;
+        int peel = trace_name_peel(name);
+        if (peel >= count && store_find(other, name) >= 0)
+            count = peel + 1;
     }
     return count;
 }
@@ -189,7 +199,7 @@ static Result check_extra(CheckRun *run, int index)
     CheckStep *step = add_step(run, extra_order(run->reference), name);
     if (!step)
         return RESULT_NO_MEMORY;
-    int peels = peel_count(run->reference), last = last_accum(run->reference);
+    int peels = peel_count(run->reference, run->reference), last = last_accum(run->reference);
     step->format = buffer->format;
     if (trace_name_peel(name) < peels || last < 0 || strcmp(what, ".accum") != 0) {
         note(step, "not compared: the reference has no such buffer");
@@ -202,7 +212,8 @@ static Result check_extra(CheckRun *run, int index)
 /* Where their trace ends too early, the peel that is missing is the first difference. */
 static Result check_missing(CheckRun *run)
 {
-    int theirs = peel_count(run->theirs), reference = peel_count(run->reference);
+    int theirs = peel_count(run->theirs, run->reference);
+    int reference = peel_count(run->reference, run->reference);
     char name[48];
     if (theirs == 0 || theirs >= reference)
         return RESULT_OK;
@@ -367,7 +378,7 @@ static Result check_file(CheckRun *run, size_t index)
         return result_fail(RESULT_BAD_INPUT,
                            "%s: the reference has no %s (it has %d peels), expected one of its "
                            "buffers",
-                           file->path, name, peel_count(run->reference));
+                           file->path, name, peel_count(run->reference, run->reference));
     CheckStep *step = add_step(run, 2 * reference, name);
     if (!step)
         return RESULT_NO_MEMORY;

@@ -54,6 +54,7 @@ says 'exr' ' identical$'
 check 0 truth.exr
 check 0 truth.exr --bound
 check 0 right_trace.exr
+check 0 right_trace.exr --bound
 check 2 truth.exr --tolerance 0
 oiiotool right.exr -d half -o half.exr
 check 0 half.exr
@@ -150,6 +151,12 @@ one_line 'EXR without B'
 printf 'peel-dump 1 accum rgba32f 96x54 top little\nxx' >short.peel
 check 4 short.peel
 one_line 'a dump that ends early'
+{
+    printf 'peel-dump 1 peel.0.mine rgba8 96x54 top little\n'
+    head -c 20736 /dev/zero
+} >unknown.peel
+check 4 unknown.peel
+says 'a dump of other buffers' 'the reference has none of its buffers'
 check 4 none.png
 check 4 .
 check 4

@@ -9,62 +9,12 @@
 #include <GL/osmesa.h>
 
 #include <GL/glext.h>
-#include <jansson.h>
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb_image_write.h>
 
+#include "contract.h"
 #include "peel_dump.h"
-
-static const char *vertex_text =
-    "#version 450 core\n"
-    "layout(location = 0) in vec3 position;\nlayout(location = 1) in vec3 normal;\n"
-    "layout(location = 0) uniform mat4 model_view;\nlayout(location = 1) uniform mat3 turn;\n"
-    "layout(location = 2) uniform mat4 projection;\n"
-    "layout(location = 0) out vec3 P;\nlayout(location = 1) out vec3 N;\n"
-    "void main() {\n"
-    "    precise vec4 view = model_view * vec4(position, 1.0);\n"
-    "    precise vec4 clip = projection * vec4(view.xyz, 1.0);\n"
-    "    precise vec3 turned = turn * normal;\n"
-    "    gl_Position = clip;\n    P = view.xyz;\n    N = turned;\n}\n";
-static const char *surface_text =
-    "layout(location = 0) in vec3 P;\nlayout(location = 1) in vec3 N;\n"
-    "layout(location = 3) uniform vec4 base;\nlayout(location = 4) uniform vec3 material;\n"
-    "layout(location = 5) uniform ivec2 facing;\nlayout(location = 6) uniform int peel;\n"
-    "layout(binding = 0) uniform sampler2D opaque;\nlayout(binding = 1) uniform sampler2D last;\n"
-    "layout(location = 0) out vec4 color;\n"
-    "void main() {\n"
-    "    float z = gl_FragCoord.z;\n"
-    "    ivec2 at = ivec2(gl_FragCoord.xy);\n"
-#ifndef MISTAKE_OPAQUE_DEPTH_IGNORED
-    "    if (peel >= 0 && z >= texelFetch(opaque, at, 0).r) discard;\n"
-#endif
-    "    if (peel > 0 && z <= texelFetch(last, at, 0).r) discard;\n"
-    "    bool front = gl_FrontFacing != (facing.x != 0);\n"
-    "    if (facing.y != 0 && !front) discard;\n"
-    "    precise vec3 n = N * inversesqrt(max(dot(N, N), TINY));\n"
-    "    color = shade(front ? n : -n, P, base, material);\n"
-#ifdef MISTAKE_NOT_PREMULTIPLIED
-    "    color.rgb /= base.a;\n"
-#endif
-    "}\n";
-static const char *screen_text =
-    "#version 450 core\n"
-    "void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0, 1); "
-    "}\n";
-static const char *layer_text = "#version 450 core\nlayout(binding = 0) uniform sampler2D layer;\n"
-                                "layout(location = 0) out vec4 color;\n"
-                                "void main() {\n"
-                                "    color = texelFetch(layer, ivec2(gl_FragCoord.xy), 0);\n"
-                                "    if (color.a <= 1e-4) discard;\n}\n";
-static const char *display_text =
-    "#version 450 core\nlayout(binding = 0) uniform sampler2D accum;\n"
-    "layout(location = 0) uniform vec3 background;\nlayout(location = 0) out vec4 color;\n"
-    "void main() {\n"
-    "    vec4 c = texelFetch(accum, ivec2(gl_FragCoord.xy), 0);\n"
-#ifndef MISTAKE_BACKGROUND_FORGOTTEN
-    "    c.rgb += background * c.a;\n"
-#endif
-    "    color = vec4(pow(c.rgb / (c.rgb + 1.0), vec3(1.0 / 2.2)), 1.0);\n}\n";
+#include "shaders.h"
 
 enum {
     OPAQUE,
@@ -76,39 +26,6 @@ enum {
 };
 static GLuint framebuffers[TARGETS], colors[TARGETS], depths[TARGETS];
 static int width, height;
-static json_t *contract;
-
-static void *load(const char *folder, const char *name, size_t *size)
-{
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "rb");
-    if (!file || fseek(file, 0, SEEK_END) != 0) {
-        perror(path);
-        exit(1);
-    }
-    *size = (size_t)ftell(file);
-    char *bytes = calloc(*size + 1, 1);
-    rewind(file);
-    if (!bytes || fread(bytes, 1, *size, file) != *size)
-        exit(1);
-    fclose(file);
-    return bytes;
-}
-
-/* The floats of an array of strings, or of one string. */
-static const float *floats(json_t *object, const char *key)
-{
-    static float values[4][16];
-    static int next;
-    json_t *value = json_object_get(object, key);
-    float *out = values[next++ % 4];
-    for (size_t i = 0; i < json_array_size(value); i++)
-        out[i] = strtof(json_string_value(json_array_get(value, i)), NULL);
-    if (json_is_string(value))
-        out[0] = strtof(json_string_value(value), NULL);
-    return out;
-}
 
 static GLuint program(const char *vertex, int count, const char *const *fragment)
 {
@@ -141,40 +58,6 @@ static void make_targets(void)
         glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, colors[i], 0);
         glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depths[i], 0);
     }
-}
-
-static void load_scene(const char *folder)
-{
-    size_t size, lights = json_array_size(json_object_get(contract, "lights"));
-    void *vertices = load(folder, "vertices.bin", &size);
-    GLuint names[4];
-    glGenVertexArrays(1, names);
-    glBindVertexArray(names[0]);
-    glGenBuffers(3, names + 1);
-    glBindBuffer(GL_ARRAY_BUFFER, names[1]);
-    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size, vertices, GL_STATIC_DRAW);
-    for (GLuint i = 0; i < 2; i++) {
-        glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 32, (char *)0 + 12 * i);
-        glEnableVertexAttribArray(i);
-    }
-    void *indices = load(folder, "indices.bin", &size);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, names[2]);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)size, indices, GL_STATIC_DRAW);
-    float(*packed)[12] = calloc(lights + 1, sizeof *packed);
-    for (size_t i = 0; i < lights; i++) {
-        json_t *light = json_array_get(json_object_get(contract, "lights"), i);
-        memcpy(packed[i], floats(light, "position"), 12);
-        memcpy(packed[i] + 4, floats(light, "color"), 12);
-        memcpy(packed[i] + 8, floats(light, "attenuation"), 12);
-        packed[i][11] = *floats(light, "inverse_range2");
-    }
-    glBindBuffer(GL_UNIFORM_BUFFER, names[3]);
-    glBufferData(GL_UNIFORM_BUFFER, (GLsizeiptr)((lights + 1) * sizeof *packed), packed,
-                 GL_STATIC_DRAW);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, names[3]);
-    free(vertices);
-    free(indices);
-    free(packed);
 }
 
 static void bind(GLuint unit, GLuint texture)
@@ -220,7 +103,7 @@ static int draw(int target, int peel, GLuint surface)
         glDrawElementsBaseVertex(
             GL_TRIANGLES, (int)json_integer_value(json_object_get(object, "index_count")),
             GL_UNSIGNED_INT,
-            (char *)0 + 4 * json_integer_value(json_object_get(object, "first_index")),
+            (void *)(4 * (size_t)json_integer_value(json_object_get(object, "first_index"))),
             (int)json_integer_value(json_object_get(object, "base_vertex")));
     }
     glEndQuery(GL_ANY_SAMPLES_PASSED);

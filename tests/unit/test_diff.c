@@ -1,4 +1,4 @@
-/* compare/diff.h and image/planes.h: figures computed by hand. */
+/* compare/diff.h: figures computed by hand. */
 #include "testing.h"
 
 #include "compare/diff.h"
@@ -425,62 +425,6 @@ START_TEST(test_image)
 }
 END_TEST
 
-static void check_names(const Planes *planes, const char *expected)
-{
-    char names[64] = "";
-    for (int i = 0; i < planes->count; i++) {
-        strcat(names, i ? "," : "");
-        strcat(names, planes->planes[i].name);
-    }
-    ck_assert_str_eq(names, expected);
-}
-
-START_TEST(test_planes)
-{
-    static const char *const names[] = {"A", "B", "G", "N.R", "R", "Z"};
-    Planes planes;
-    ck_assert_int_eq(planes_create(2, 2, 6, 0, "planes", &planes), RESULT_OK);
-    for (int i = 0; i < 6; i++)
-        ck_assert_int_eq(planes_name(&planes.planes[i], names[i]), RESULT_OK);
-    planes_sort(&planes);
-    check_names(&planes, "R,G,B,A,N.R,Z");
-    ck_assert_int_eq(planes_find(&planes, "N.R"), 4);
-    ck_assert_int_eq(planes_find(&planes, "N"), -1);
-    ck_assert(!planes_keep(&planes, "R,G,N"));
-    ck_assert(!planes_keep(&planes, "R,,G"));
-    check_names(&planes, "R,G,B,A,N.R,Z");
-    ck_assert(planes_keep(&planes, "Z,R,Z,N.R"));
-    check_names(&planes, "Z,R,N.R");
-    planes_free(&planes);
-    ck_assert_int_eq(planes_create(1024, 1024, 4, (size_t)16 << 20, "p", &planes), RESULT_OK);
-    planes_free(&planes);
-    ck_assert_int_eq(planes_create(1024, 1025, 4, (size_t)16 << 20, "p", &planes),
-                     RESULT_NO_MEMORY);
-    ck_assert_str_eq(result_message(),
-                     "p: 4 channels of 1024x1025 pixels need more than 16777216 bytes");
-    planes_free(&planes);
-}
-END_TEST
-
-START_TEST(test_planes_of_grey)
-{
-    uint8_t pixels[2][4] = {{7, 7, 7, 9}, {8, 8, 8, 10}};
-    const Image image = {2, 1, FORMAT_RGBA8, pixels};
-    static const char *const names[] = {"Y", "Y,A", "R,G,B", "R,G,B,A"};
-    for (int channels = 1; channels <= 4; channels++) {
-        Planes planes;
-        ck_assert_int_eq(planes_from_image(&image, channels, 0, "image", &planes), RESULT_OK);
-        check_names(&planes, names[channels - 1]);
-        ck_assert_uint_eq(planes.planes[0].bits[1], 8);
-        if (channels % 2 == 0)
-            ck_assert_uint_eq(planes.planes[channels - 1].bits[1], 10);
-        ck_assert_str_eq(planes_kind_name(planes.planes[0].kind, planes.planes[0].unorm_max),
-                         "unorm8");
-        planes_free(&planes);
-    }
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("diff");
@@ -496,8 +440,6 @@ int main(void)
     tcase_add_test(tcase, test_worst);
     tcase_add_test(tcase, test_deep);
     tcase_add_test(tcase, test_image);
-    tcase_add_test(tcase, test_planes);
-    tcase_add_test(tcase, test_planes_of_grey);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

@@ -70,11 +70,11 @@ START_TEST(test_colour)
         b.planes[1].bits[i] = testing_bits(0.4702f);
     }
     ck_assert_uint_eq(seen(&a, &b), SIDE * SIDE);
-    a = grey_image(SIDE, SIDE, 0.0005f);
-    b = grey_image(SIDE, SIDE, 0.0005f);
+    a = grey_image(SIDE, SIDE, 0.02f);
+    b = grey_image(SIDE, SIDE, 0.02f);
     for (int i = 0; i < SIDE * SIDE; i++) {
-        b.planes[0].bits[i] = testing_bits(0.0006f);
-        b.planes[1].bits[i] = testing_bits(0.0004702f);
+        b.planes[0].bits[i] = testing_bits(0.024f);
+        b.planes[1].bits[i] = testing_bits(0.018811f);
     }
     ck_assert_uint_eq(seen(&a, &b), 0);
 }
