@@ -63,8 +63,9 @@ void report_diagnose_verdict(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE]
 
 void report_diagnose_why(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE])
 {
-    char beyond[SUMMARY_NUMBER], far[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER];
+    char beyond[SUMMARY_NUMBER], over[SUMMARY_NUMBER], far[SUMMARY_NUMBER], pixels[SUMMARY_NUMBER];
     summary_count(diagnosis->beyond, beyond);
+    summary_count(diagnosis->over, over);
     summary_count(diagnosis->far, far);
     summary_count(diagnosis->pixels, pixels);
     switch (diagnosis->reason) {
@@ -74,9 +75,9 @@ void report_diagnose_why(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE])
         break;
     case DIAGNOSE_TOLERATED:
         snprintf(out, DIAGNOSE_LINE,
-                 "%s of %s pixels differ by more than storing may change, %s by more than another "
-                 "right renderer may; one in %d is allowed.",
-                 beyond, pixels, far, FIT_FEW);
+                 "Of %s pixels %s differ by more than storing may change, %s by more than the "
+                 "tolerance (one in %d may), %s by more than %g (one in %d).",
+                 pixels, beyond, over, FIT_FEW, far, FIT_FAR, FIT_FEW_FAR);
         break;
     case DIAGNOSE_COLORS:
         snprintf(out, DIAGNOSE_LINE,
@@ -92,19 +93,19 @@ void report_diagnose_why(const Diagnosis *diagnosis, char out[DIAGNOSE_LINE])
         snprintf(out, DIAGNOSE_LINE,
                  "%s of %s pixels differ from the reference; the mistake explains %.1f %% of it, "
                  "not all.",
-                 far, pixels, 100.0 * diagnosis->rows[0].explains);
+                 over, pixels, 100.0 * diagnosis->rows[0].explains);
         break;
     case DIAGNOSE_NOTHING:
         if (diagnosis->nonfinite == diagnosis->pixels)
             snprintf(out, DIAGNOSE_LINE, "Every pixel is NaN or infinite.");
         else if (diagnosis->nonfinite)
             snprintf(out, DIAGNOSE_LINE, "%s of %s pixels are NaN or infinite, %s differ.",
-                     summary_count(diagnosis->nonfinite, beyond), pixels, far);
+                     summary_count(diagnosis->nonfinite, beyond), pixels, over);
         else
             snprintf(
                 out, DIAGNOSE_LINE,
                 "%s of %s pixels differ from the reference; a mistake is named from %.0f %% on.",
-                far, pixels, 100.0 * DIAGNOSE_EXPLAINS);
+                over, pixels, 100.0 * DIAGNOSE_EXPLAINS);
         break;
     }
 }

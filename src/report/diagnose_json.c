@@ -117,7 +117,7 @@ Result report_diagnose_json(const DiagnoseSubject *subject, const Diagnosis *dia
     document_put(&json, root, "invisible", names(&json, diagnosis->invisible));
     document_put(&json, root, "pixels", document_count(diagnosis->pixels));
     document_put(&json, root, "pixels_beyond_quantisation", document_count(diagnosis->beyond));
-    document_put(&json, root, "pixels_beyond_tolerance", document_count(diagnosis->far));
+    document_put(&json, root, "pixels_beyond_tolerance", document_count(diagnosis->over));
     document_put(&json, root, "pixels_nonfinite", document_count(diagnosis->nonfinite));
     document_put(&json, root, "scene", json_string(subject->scene_path));
     document_put(&json, root, "image", image(&json, subject, diagnosis));

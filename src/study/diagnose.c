@@ -348,7 +348,6 @@ static void decide(Work *work)
     Diagnosis *out = work->out;
     const FitResult *none = &work->none;
     const DiagnoseRow *best = out->count ? &out->rows[0] : NULL;
-    uint64_t few = out->pixels / FIT_FEW;
     /* Where the reference fits, what fits as well cannot be told from it. */
     for (size_t i = 0; none->beyond == 0 && i < out->count && out->rows[i].beyond == 0; i++)
         out->invisible |= out->rows[i].mutations;
@@ -356,12 +355,12 @@ static void decide(Work *work)
         out->reason = DIAGNOSE_QUANTISED;
     else if (best && best->beyond == 0)
         out->reason = DIAGNOSE_EXACT;
-    else if (none->far <= few)
+    else if (fit_tolerates(&work->fit, none, false))
         out->reason = DIAGNOSE_TOLERATED;
     else if (best && best->explains >= DIAGNOSE_EXPLAINS)
         out->reason = DIAGNOSE_NEARLY;
     else
-        out->reason = none->far_rgb <= few ? DIAGNOSE_COLORS : DIAGNOSE_NOTHING;
+        out->reason = fit_tolerates(&work->fit, none, true) ? DIAGNOSE_COLORS : DIAGNOSE_NOTHING;
     out->verdict = out->reason == DIAGNOSE_NOTHING ? DIAGNOSE_UNKNOWN
                    : out->reason == DIAGNOSE_EXACT || out->reason == DIAGNOSE_NEARLY
                        ? DIAGNOSE_MISTAKE
@@ -437,6 +436,7 @@ static Result run(Work *work)
     if (result != RESULT_OK)
         return result;
     out->beyond = work->none.beyond;
+    out->over = work->none.over;
     out->far = work->none.far;
     rank(out);
     decide(work);

@@ -26,7 +26,7 @@ typedef enum DiagnoseVerdict {
 /* Why it agrees, or does not. */
 typedef enum DiagnoseReason {
     DIAGNOSE_QUANTISED = 0, /* agrees: no value is beyond quantisation */
-    DIAGNOSE_TOLERATED,     /* agrees: at most one pixel of FIT_FEW is beyond the tolerance */
+    DIAGNOSE_TOLERATED,     /* agrees: few pixels are beyond the tolerance (fit_tolerates) */
     DIAGNOSE_COLORS,        /* agrees so far as colours go; their alpha is neither meaning */
     DIAGNOSE_EXACT,         /* mistake: explains exactly */
     DIAGNOSE_NEARLY,        /* mistake: explains at least DIAGNOSE_EXPLAINS */
@@ -62,16 +62,16 @@ typedef enum DiagnoseClass {
 typedef struct Diagnosis {
     DiagnoseVerdict verdict;
     DiagnoseReason reason;
-    GivenMeaning form;            /* of the best mistake; else of the reference */
-    PixelFormat format;           /* of their file */
-    char described[128];          /* their file and what it was taken for */
-    uint64_t pixels, beyond, far; /* of the reference: beyond quantisation, beyond the tolerance */
-    uint64_t nonfinite;           /* theirs that are NaN or infinite: no rendering explains them */
-    DiagnoseRow *rows;            /* by rank; mistakes that change nothing here left out */
-    size_t count, equals;         /* equals: how many share the first rank */
-    uint64_t invisible;           /* mistakes that change nothing of what their file holds */
-    size_t rendered;              /* images of ref */
-    bool has_pixel, has_second;   /* has_second: else second is the reference */
+    GivenMeaning form;                  /* of the best mistake; else of the reference */
+    PixelFormat format;                 /* of their file */
+    char described[128];                /* their file and what it was taken for */
+    uint64_t pixels, beyond, over, far; /* of the reference: as in FitResult */
+    uint64_t nonfinite;         /* theirs that are NaN or infinite: no rendering explains them */
+    DiagnoseRow *rows;          /* by rank; mistakes that change nothing here left out */
+    size_t count, equals;       /* equals: how many share the first rank */
+    uint64_t invisible;         /* mistakes that change nothing of what their file holds */
+    size_t rendered;            /* images of ref */
+    bool has_pixel, has_second; /* has_second: else second is the reference */
     DiagnosePixel pixel;
     size_t second; /* row */
     /* FORMAT_RGBA32F, rows from the top: values as their file stores them, alpha 1 where it means

@@ -130,27 +130,32 @@ static Limits limits_at(const Fit *fit, double theirs, double predicted)
 /* Infinite where a side is not finite. */
 typedef struct PixelResidual {
     double quantised, tolerant; /* of the values beyond each limit */
-    bool far_rgb;
+    bool far, over_rgb, far_rgb;
 } PixelResidual;
 
 static PixelResidual residual_of(const Fit *fit, const GivenMeaning *form, const float *theirs,
                                  const float *encoded)
 {
     double quantised = 0.0, tolerant = 0.0;
-    bool far_rgb = false;
+    PixelResidual out = {0};
     for (int c = 0; c < fit_channels(form); c++) {
         double t = (double)theirs[c], p = in_form(form, encoded, c);
         if (!isfinite(t) || !isfinite(p))
-            return (PixelResidual){INFINITY, INFINITY, true};
+            return (PixelResidual){INFINITY, INFINITY, true, true, true};
         Limits limits = limits_at(fit, t, p);
         double difference = fabs(t - p), residual = difference / limits.unit;
         if (difference > limits.quantisation)
             quantised += residual * residual;
         if (difference > limits.tolerance)
             tolerant += residual * residual;
-        far_rgb |= c < 3 && difference > limits.tolerance;
+        bool over = difference > limits.tolerance, far = over && residual > FIT_FAR;
+        out.far |= far;
+        out.over_rgb |= c < 3 && over;
+        out.far_rgb |= c < 3 && far;
     }
-    return (PixelResidual){sqrt(quantised), sqrt(tolerant), far_rgb};
+    out.quantised = sqrt(quantised);
+    out.tolerant = sqrt(tolerant);
+    return out;
 }
 
 typedef struct Measuring {
@@ -176,7 +181,9 @@ static void measure_row(const Measuring *measuring, int row)
         counts = fmin(counts, fit->cap);
         out->squares += counts * counts;
         out->beyond += residual.quantised > 0.0;
-        out->far += residual.tolerant > 0.0;
+        out->over += residual.tolerant > 0.0;
+        out->far += residual.far;
+        out->over_rgb += residual.over_rgb;
         out->far_rgb += residual.far_rgb;
     }
 }
@@ -200,7 +207,9 @@ static void add_rows(const Measuring *measuring, uint32_t rows, FitResult *out)
     for (uint32_t row = measuring->phase; row < rows; row += PHASES) {
         out->squares += measuring->rows[row].squares;
         out->beyond += measuring->rows[row].beyond;
+        out->over += measuring->rows[row].over;
         out->far += measuring->rows[row].far;
+        out->over_rgb += measuring->rows[row].over_rgb;
         out->far_rgb += measuring->rows[row].far_rgb;
     }
 }
@@ -269,6 +278,14 @@ Result fit_measure(Fit *fit, const FitRendering *rendering, FitResult *out)
 
 /* ---- what counts ----------------------------------------------------------------------------- */
 
+bool fit_tolerates(const Fit *fit, const FitResult *result, bool colors)
+{
+    uint64_t pixels = (uint64_t)fit->theirs.width * (uint64_t)fit->theirs.height;
+    uint64_t over = colors ? result->over_rgb : result->over;
+    uint64_t far = colors ? result->far_rgb : result->far;
+    return over <= pixels / FIT_FEW && far <= pixels / FIT_FEW_FAR;
+}
+
 static int compare_floats(const void *a, const void *b)
 {
     float x = *(const float *)a, y = *(const float *)b;
@@ -295,7 +312,7 @@ Result fit_reference(Fit *fit, const FitRendering *rendering, FitResult *out)
     Result result = fit_measure(fit, rendering, out);
     if (result != RESULT_OK)
         return result;
-    fit->tolerant = out->far > pixels / FIT_FEW;
+    fit->tolerant = !fit_tolerates(fit, out, false);
     GivenMeaning form = out->form;
     memset(fit->encoded_rows, GIVEN_ENCODING_DETECT, (size_t)fit->encoded.height);
     result = measure_form(fit, rendering, &form, INFINITY, out);

@@ -17,9 +17,12 @@
 #include <stdint.h>
 
 #define FIT_TOLERANCE 1e-4 /* of floats, relative to max(1, value) */
-/* A right image may have one pixel of so many beyond the tolerance: on edges that another
+/* A right image may have one pixel of so many beyond the tolerance, in highlights and at depths
+ * that single precision only just resolves, and one of so many far beyond it, on edges that another
  * rasterizer rounds to the other side. */
-#define FIT_FEW 1000
+#define FIT_FEW     100
+#define FIT_FEW_FAR 1000
+#define FIT_FAR     1e-2 /* of values from 0 to 1; of greater ones, of them */
 
 enum {
     FIT_FORMS = 12 /* encodings, orders of rows, meanings of alpha */
@@ -50,8 +53,9 @@ typedef struct FitResult {
     GivenMeaning form; /* in which it fits best; not the usual one unless that is twice as bad */
     double squares;    /* over pixels, of residuals up to the cap */
     uint64_t beyond;   /* pixels with a value beyond quantisation */
-    uint64_t far;      /* with one beyond the tolerance */
-    uint64_t far_rgb;  /* with such a colour, whatever alpha is */
+    uint64_t over;     /* with one beyond the tolerance */
+    uint64_t far;      /* with one far beyond it */
+    uint64_t over_rgb, far_rgb; /* with such a colour, whatever alpha is */
 } FitResult;
 
 /* options: what is known of their image's meaning; the rest is fitted. given and pool must outlive
@@ -60,9 +64,12 @@ Result fit_create(const GivenImage *given, const GivenMeaning *options, Pool *po
 void fit_free(Fit *fit);
 
 /* Measures the unmutated reference and decides what counts from now
- * on: residuals beyond the tolerance where more pixels than one of FIT_FEW have one, else those
- * beyond quantisation; up to a cap of four times their median. */
+ * on: residuals beyond the tolerance where the image is not right, else those beyond quantisation;
+ * up to a cap of four times their median. */
 Result fit_reference(Fit *fit, const FitRendering *rendering, FitResult *out);
+
+/* Whether a right image may be as far from the reference; colors: but for its alpha. */
+bool fit_tolerates(const Fit *fit, const FitResult *result, bool colors);
 
 /* Measures another rendering. */
 Result fit_measure(Fit *fit, const FitRendering *rendering, FitResult *out);

@@ -30,7 +30,7 @@ static inline void planted_ok(Result result)
 static struct {
     RenderDesc desc;
     Frame frame;
-} planted_memory[512];
+} planted_memory[2048];
 static size_t planted_count;
 
 static inline void planted_forget(void)

@@ -6,32 +6,86 @@
 
 #include <stdio.h>
 
-static const char *const ci_scenes[] = {"tutorial", "inside_glass"};
-static const char *const full_scenes[] = {
-    "teapot_hall",       "teapot_hall_stress", "tutorial",     "chain",
-    "crossing_planes",   "alpha_ladder",       "lamps",        "at_opaque_depth",
-    "depth_16_aliasing", "inside_glass",       "thin_shells",  "raw_24",
-    "alpha_threshold",   "confetti",           "zero_normals", "layers_64"};
+/* What makes more of the mistakes visible. */
+typedef enum Variant {
+    AS_IT_IS = 0,
+    HALF_OPAQUE, /* every other instance is opaque: they hide some of the others */
+    DEPTH_24,    /* settings: another program may well have them */
+    DEPTH_16,
+    DEPTH_REVERSED
+} Variant;
+
+typedef struct Column {
+    const char *scene;
+    Variant variant;
+} Column;
+
+static const char *const variant_names[] = {"", ", every other instance opaque", ", --depth d24",
+                                            ", --depth d16", ", --depth-range reversed"};
+static const Column ci_columns[] = {{"tutorial", AS_IT_IS}, {"inside_glass", AS_IT_IS}};
+static const Column full_columns[] = {
+    {"teapot_hall", AS_IT_IS},
+    {"teapot_hall_stress", AS_IT_IS},
+    {"tutorial", AS_IT_IS},
+    {"chain", AS_IT_IS},
+    {"crossing_planes", AS_IT_IS},
+    {"alpha_ladder", AS_IT_IS},
+    {"lamps", AS_IT_IS},
+    {"at_opaque_depth", AS_IT_IS},
+    {"depth_16_aliasing", AS_IT_IS},
+    {"inside_glass", AS_IT_IS},
+    {"thin_shells", AS_IT_IS},
+    {"alpha_threshold", AS_IT_IS},
+    {"alpha_zero", AS_IT_IS},
+    {"confetti", AS_IT_IS},
+    {"zero_normals", AS_IT_IS},
+    {"layers_64", AS_IT_IS},
+    {"layers_one_ulp", DEPTH_REVERSED},
+    {"near_far_wide", DEPTH_REVERSED},
+    {"crossing_nearly_coplanar", DEPTH_REVERSED},
+    {"far_infinite", DEPTH_REVERSED},
+    {"chain", HALF_OPAQUE},
+    {"crossing_planes", HALF_OPAQUE},
+    {"tutorial", HALF_OPAQUE},
+    {"raw_24", DEPTH_24},
+    {"tutorial", DEPTH_16},
+    {"thin_shells", DEPTH_16},
+    {"teapot_hall_stress", DEPTH_16},
+    {"at_opaque_depth", DEPTH_24},
+    {"at_opaque_depth", DEPTH_16},
+    {"at_opaque_depth", DEPTH_REVERSED},
+};
 enum {
-    SCENES_MOST = 16
+    COLUMNS_FULL = sizeof full_columns / sizeof full_columns[0]
 };
 
-static const char *const *scenes;
-static int scene_count;
+static const Column *columns;
+static int column_count;
 static RenderDesc desc;
 
 static void choose(void)
 {
     bool full = getenv("PEEL_TEST_FULL") != NULL;
-    scenes = full ? full_scenes : ci_scenes;
-    scene_count = full ? SCENES_MOST : 2;
+    columns = full ? full_columns : ci_columns;
+    column_count = full ? COLUMNS_FULL : 2;
     desc = (RenderDesc){.width = full ? 96 : 48, .height = full ? 72 : 36, .lights = 8};
+}
+
+static void open_column(const Column *column, Scene *out)
+{
+    planted_scene(column->scene, out);
+    for (size_t i = 0; column->variant == HALF_OPAQUE && i < out->instance_count; i += 2)
+        out->materials[out->instances[i].material].alpha_mode = ALPHA_OPAQUE;
+    desc.depth = column->variant == DEPTH_24   ? FORMAT_D24
+                 : column->variant == DEPTH_16 ? FORMAT_D16
+                                               : FORMAT_RGBA32F;
+    desc.depth_range = column->variant == DEPTH_REVERSED ? DEPTH_RANGE_REVERSED : DEPTH_RANGE_GL;
 }
 
 /* ---- the table ---- */
 
 /* '*' found, '=' equal to another, '.' invisible here, '!' none of these. */
-static char outcomes[MUTATION_COUNT][SCENES_MOST][PLANTED_FILES];
+static char outcomes[MUTATION_COUNT][COLUMNS_FULL][PLANTED_FILES];
 
 static char outcome(const Scene *scene, MutationId id, PlantedFile file)
 {
@@ -65,14 +119,14 @@ static char outcome(const Scene *scene, MutationId id, PlantedFile file)
 static void print_table(void)
 {
     int counts[128] = {0};
-    for (int s = 0; s < scene_count; s++)
-        printf("%2d %s\n", s + 1, scenes[s]);
+    for (int s = 0; s < column_count; s++)
+        printf("%2d %s%s\n", s + 1, columns[s].scene, variant_names[columns[s].variant]);
     printf("%-28s", "PNG, EXR");
-    for (int s = 0; s < scene_count; s++)
+    for (int s = 0; s < column_count; s++)
         printf(" %2d", s + 1);
     for (int id = 0; id < MUTATION_COUNT; id++) {
         printf("\n%-28s", mutation_info((MutationId)id)->name);
-        for (int s = 0; s < scene_count; s++) {
+        for (int s = 0; s < column_count; s++) {
             const char *cell = outcomes[id][s];
             printf(" %c%c", cell[0], cell[1]);
             counts[(int)cell[0]]++;
@@ -86,7 +140,7 @@ static void print_table(void)
 static int wrong_of(MutationId id)
 {
     int wrong = 0;
-    for (int s = 0; s < scene_count; s++)
+    for (int s = 0; s < column_count; s++)
         wrong += (outcomes[id][s][0] == '!') + (outcomes[id][s][1] == '!');
     return wrong;
 }
@@ -95,9 +149,9 @@ START_TEST(test_planted)
 {
     int wrong = 0, seen = 0;
     choose();
-    for (int s = 0; s < scene_count; s++) {
+    for (int s = 0; s < column_count; s++) {
         Scene scene;
-        planted_scene(scenes[s], &scene);
+        open_column(&columns[s], &scene);
         for (int id = 0; id < MUTATION_COUNT; id++)
             for (int file = 0; file < PLANTED_FILES; file++)
                 outcomes[id][s][file] = outcome(&scene, (MutationId)id, (PlantedFile)file);
@@ -106,7 +160,7 @@ START_TEST(test_planted)
     print_table();
     for (int id = 0; id < MUTATION_COUNT; id++) {
         wrong += wrong_of((MutationId)id);
-        for (int s = 0; s < scene_count; s++)
+        for (int s = 0; s < column_count; s++)
             seen += outcomes[id][s][PLANTED_EXR] == '*';
     }
     ck_assert_int_eq(wrong, 0);

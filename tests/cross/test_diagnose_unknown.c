@@ -103,7 +103,7 @@ static void expect_few(const Scene *scene, const Frame *frame)
 {
     for (size_t extra = 0; extra < 2; extra++) {
         GivenImage given = planted_given(frame, PLANTED_PNG);
-        size_t count = pixel_count() / FIT_FEW + extra;
+        size_t count = pixel_count() / FIT_FEW_FAR + extra;
         for (size_t i = 0; i < count; i++)
             ((uint8_t *)given.stored.pixels)[4 * (37 * i + 5)] ^= 0x80;
         expect(scene, &given, extra ? DIAGNOSE_UNKNOWN : DIAGNOSE_AGREES, "a few pixels");
@@ -450,6 +450,32 @@ START_TEST(test_others)
 }
 END_TEST
 
+/* A wild pixel, which is no part of the mistake, decides nothing. */
+START_TEST(test_outlier)
+{
+    static const MutationId ids[] = {MUTATION_ACCUMULATION_8_BIT, MUTATION_MISSING_1_OVER_PI,
+                                     MUTATION_LAYERS_REVERSED, MUTATION_LIGHTS_OFF_BY_ONE};
+    Scene scene;
+    bool only;
+    choose();
+    planted_scene("tutorial", &scene);
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
+        GivenImage given = planted_mistake(&scene, &desc, mutation_bit(ids[i]), PLANTED_EXR);
+        ((float *)given.stored.pixels)[4 * 17] = 50.0f;
+        Diagnosis diagnosis;
+        planted_diagnose(&scene, &desc, &given, &diagnosis);
+        ck_assert_msg(
+            diagnosis.verdict == DIAGNOSE_MISTAKE && diagnosis.reason == DIAGNOSE_NEARLY &&
+                planted_first(&diagnosis, mutation_bit(ids[i]), &only),
+            "%s: %s, %g", mutation_info(ids[i])->name, diagnose_verdict_name(diagnosis.verdict),
+            diagnosis.count ? diagnosis.rows[0].explains : 0.0);
+        diagnose_free(&diagnosis);
+        given_free(&given);
+    }
+    scene_free(&scene);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("diagnose_unknown");
@@ -458,6 +484,7 @@ int main(void)
     tcase_add_test(tcase, test_right);
     tcase_add_test(tcase, test_unknown);
     tcase_add_test(tcase, test_others);
+    tcase_add_test(tcase, test_outlier);
     suite_add_tcase(suite, tcase);
     return testing_run_here(suite);
 }

@@ -54,6 +54,7 @@ static RenderDesc desc_of(const Case *of)
 static void render(const Scene *scene, RenderDesc desc, uint64_t mutations, Frame *out)
 {
     desc.mutations = mutations;
+    desc.threads = 1; /* images are too small for more */
     ck_assert_msg(pipeline_render(scene, &desc, NULL, out) == RESULT_OK, "%s", result_message());
     for (int i = 0; i < 4 * desc.width * desc.height; i++)
         ck_assert_msg(isfinite(((const float *)out->final.pixels)[i]), "%dx%d, mutations %#llx",
@@ -284,7 +285,6 @@ START_TEST(test_pairs)
     RenderDesc desc = desc_of(&of);
     desc.width = 32;
     desc.height = 24;
-    desc.threads = 1;
     load(of.scene, &scene);
     render(&scene, desc, 0, &right);
     for (int a = 0; a < MUTATION_COUNT; a++) {

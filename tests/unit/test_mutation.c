@@ -91,6 +91,12 @@ START_TEST(test_exclusion)
         for (int b = 0; b < MUTATION_COUNT; b++)
             ck_assert_int_eq(mutation_excludes((MutationId)a, (MutationId)b),
                              mutation_excludes((MutationId)b, (MutationId)a));
+    desc.mutations = mutation_bit(MUTATION_NOT_PREMULTIPLIED) |
+                     mutation_bit(MUTATION_PREMULTIPLIED_TWICE) |
+                     mutation_bit(MUTATION_PASSES_SHORT) | mutation_bit(MUTATION_PASSES_4);
+    mutation_apply(&desc, &out);
+    ck_assert_uint_eq(out.mutations, mutation_bit(MUTATION_PREMULTIPLIED_TWICE));
+    ck_assert_int_eq(out.passes, 4);
     desc.mutations = mutation_bit(MUTATION_DEPTH_16) | mutation_bit(MUTATION_DEPTH_24) |
                      mutation_bit(MUTATION_ACCUMULATION_8_BIT) |
                      mutation_bit(MUTATION_ACCUMULATION_HALF_ROUNDED);
