@@ -417,6 +417,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
     case KEY_METHOD:
         return parse_method(argument, options);
     case KEY_PASSES:
+        options->has_passes = true;
         return options_passes(argument, desc);
     case KEY_THREADS:
         return options_count("--threads", argument, 1, OPTIONS_THREADS_MAX, &desc->threads);
