@@ -46,7 +46,7 @@ typedef struct TileLight {
     unsigned char *accum;
     PassCounts *counts;
     int first_varying, varyings; /* those between are needed: without lights, only uv */
-    bool transparent, seed_blend;
+    bool seed_blend;
     bool exact; /* the G-buffer keeps every bit and the position */
     ShadeForm form;
     Gathered whole, parts; /* a full block; fragments of others */
@@ -376,7 +376,6 @@ static inline void tile_light_begin(const Pass *pass, bool transparent, TileLigh
     const GBufferLayout *layout = &pass->layout;
     out->pass = pass;
     out->list = transparent ? &pass->geometry.transparent : &pass->geometry.opaque;
-    out->transparent = transparent;
     out->seed_blend = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
     out->exact = layout->normal == FORMAT_RGBA32F && layout->position == FORMAT_RGBA32F &&
                  layout->diffuse == FORMAT_RGBA32F && layout->material == FORMAT_RGBA32F;
