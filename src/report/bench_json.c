@@ -5,20 +5,14 @@
 #include "report/document.h"
 #include "study/bench_stats.h"
 
-#include <math.h>
-
-static json_t *real(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 /* What names a test. */
 static json_t *test_object(Document *json, const BenchReport *report, const BenchRow *row)
 {
     json_t *object = json_object();
     char size[32];
     snprintf(size, sizeof size, "%dx%d", row->width, row->height);
-    document_put(json, object, "scene", json_string(report->plan->scenes[row->scene].scene->name));
+    document_put(json, object, "scene",
+                 document_string(report->plan->scenes[row->scene].scene->name));
     document_put(json, object, "size", json_string(size));
     document_put(json, object, "method", json_string(method_info(row->method)->name));
     document_put(json, object, "formats", json_string(report->plan->formats[row->format].name));
@@ -33,12 +27,12 @@ static json_t *row_object(Document *json, const BenchReport *report, const Bench
     document_put(json, object, "passes",
                  row->passes ? json_integer(row->passes) : json_string("auto"));
     document_put(json, object, "lights", json_integer(row->lights));
-    document_put(json, object, "cpu_ms", real(row->cpu_ms));
-    document_put(json, object, "wall_ms", real(row->wall_ms));
-    document_put(json, object, "spread", real(row->spread));
-    document_put(json, object, "wall_spread", real(row->wall_spread));
-    document_put(json, object, "max_abs", real(row->max_abs));
-    document_put(json, object, "rmse", real(row->rmse));
+    document_put(json, object, "cpu_ms", document_real(row->cpu_ms));
+    document_put(json, object, "wall_ms", document_real(row->wall_ms));
+    document_put(json, object, "spread", document_real(row->spread));
+    document_put(json, object, "wall_spread", document_real(row->wall_spread));
+    document_put(json, object, "max_abs", document_real(row->max_abs));
+    document_put(json, object, "rmse", document_real(row->rmse));
     document_put(json, object, "peak_bytes", json_integer((json_int_t)row->peak_bytes));
     document_put(json, object, "peels", json_integer(row->peels));
     document_put(json, object, "differing", json_integer((json_int_t)row->differing));
@@ -48,8 +42,8 @@ static json_t *row_object(Document *json, const BenchReport *report, const Bench
 
 static void put_ratios(Document *json, json_t *object, BenchRatios ratios)
 {
-    document_put(json, object, "geometric_mean", real(ratios.mean));
-    document_put(json, object, "least", real(ratios.least));
+    document_put(json, object, "geometric_mean", document_real(ratios.mean));
+    document_put(json, object, "least", document_real(ratios.least));
     document_put(json, object, "cells", json_integer((json_int_t)ratios.cells));
 }
 
