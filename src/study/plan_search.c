@@ -4,6 +4,7 @@
 #include "base/progress.h"
 #include "compare/metrics.h"
 #include "frame/method.h"
+#include "study/bench_stats.h"
 #include "study/pareto.h"
 
 #include <math.h>
@@ -209,26 +210,13 @@ static Result try_method(Search *search, MethodId method)
 
 /* ---- the answer ---- */
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
-static double median(const double *values, int count)
-{
-    double sorted[RUNS];
-    memcpy(sorted, values, (size_t)count * sizeof *values);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare_doubles);
-    return sorted[count / 2];
-}
-
 static void take_medians(const Search *search)
 {
     for (size_t i = 0; i < search->out->count; i++) {
         PlanChoice *choice = &search->out->choices[i];
-        choice->cpu_ms = median(search->times[i].cpu_ms, choice->runs);
-        choice->wall_ms = median(search->times[i].wall_ms, choice->runs);
+        double spread;
+        choice->cpu_ms = bench_median(search->times[i].cpu_ms, choice->runs, &spread);
+        choice->wall_ms = bench_median(search->times[i].wall_ms, choice->runs, &spread);
     }
 }
 
