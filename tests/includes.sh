@@ -61,7 +61,8 @@ function reaches_arithmetic(file, visited, i, found, count, list) {
 BEGIN {
     upstream["base"] = " base "
     upstream["number"] = " number" upstream["base"]
-    upstream["image"] = " image" upstream["number"]
+    upstream["blend"] = " blend" upstream["number"]
+    upstream["image"] = " image" upstream["blend"]
     upstream["scene"] = " scene" upstream["image"]
     upstream["frame"] = " frame" upstream["scene"]
     upstream["compare"] = " compare" upstream["frame"]

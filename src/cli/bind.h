@@ -15,6 +15,10 @@ int bind_find_renderer(const char *name);
 
 /* argv[0] is "peel <command>"; returns the exit code. */
 int cmd_bench(int argc, char **argv);
+int cmd_blend(int argc, char **argv);
+int cmd_blend_check(int argc, char **argv);
+int cmd_blend_eval(int argc, char **argv);
+int cmd_blend_vectors(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_check(int argc, char **argv);
 int cmd_compare(int argc, char **argv);

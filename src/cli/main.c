@@ -19,6 +19,7 @@ typedef struct Command {
 static const Command commands[] = {
     {"render", "one renderer to PNG, EXR or deep EXR, with --trace every buffer", cmd_render},
     {"bench", "speed against error, over scenes, passes, lights, threads and more", cmd_bench},
+    {"blend", "blend arithmetic: test vectors, checking results, a calculator", cmd_blend},
     {"check", "somebody's image or passes against the reference", cmd_check},
     {"compare", "all three renderers; table, JSON, report", cmd_compare},
     {"diagnose", "which known mistake explains an image by another program", cmd_diagnose},

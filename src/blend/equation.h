@@ -1,0 +1,79 @@
+/* What is blended: factors and functions as OpenGL has them, and the equations with names.
+ *
+ * Each stored channel becomes func(source · factor, destination · factor); MIN and MAX take no
+ * factors. Formats without alpha read a destination alpha of 1, those without a channel drop it.
+ * Source: OpenGL 4.6 core, section 17.3.6. Not modelled: the constant colour, dual sources, logic
+ * operations, sRGB targets, write masks. */
+#ifndef PEEL_BLEND_EQUATION_H
+#define PEEL_BLEND_EQUATION_H
+
+#include "base/result.h"
+
+typedef enum BlendFactor {
+    FACTOR_ZERO = 0,
+    FACTOR_ONE,
+    FACTOR_SRC_COLOR, /* per channel: of alpha the source's alpha */
+    FACTOR_ONE_MINUS_SRC_COLOR,
+    FACTOR_DST_COLOR,
+    FACTOR_ONE_MINUS_DST_COLOR,
+    FACTOR_SRC_ALPHA,
+    FACTOR_ONE_MINUS_SRC_ALPHA,
+    FACTOR_DST_ALPHA,
+    FACTOR_ONE_MINUS_DST_ALPHA,
+    FACTOR_SRC_ALPHA_SATURATE, /* min(source alpha, 1 − destination alpha); of alpha 1 */
+    FACTOR_COUNT
+} BlendFactor;
+
+typedef enum BlendFunc {
+    BLEND_FUNC_ADD = 0,
+    BLEND_FUNC_SUBTRACT,         /* source − destination */
+    BLEND_FUNC_REVERSE_SUBTRACT, /* destination − source */
+    BLEND_FUNC_MIN,
+    BLEND_FUNC_MAX,
+    BLEND_FUNC_COUNT
+} BlendFunc;
+
+typedef struct BlendEquation {
+    BlendFactor source, destination;             /* of red, green and blue */
+    BlendFactor source_alpha, destination_alpha; /* of alpha */
+    BlendFunc func, func_alpha;
+} BlendEquation;
+
+typedef enum EquationId {
+    EQUATION_UNDER = 0, /* behind what is there; its alpha is transmittance */
+    EQUATION_OVER,      /* straight source colours; alphas are coverage */
+    EQUATION_OVER_PREMULTIPLIED,
+    EQUATION_ADD,
+    EQUATION_MAX,
+    EQUATION_WEIGHTED_SUM, /* colours weighted by their alpha, and the sum of the weights */
+    EQUATION_PRODUCT,      /* of 1 − source: the weighted methods' revealage */
+    EQUATION_SEED,         /* number/blend.h: blend_opaque_seed and those below */
+    EQUATION_OVER_TRANSMITTANCE,
+    EQUATION_REPLACE,
+    EQUATION_KEEP,
+    EQUATION_COUNT
+} EquationId;
+
+typedef struct EquationInfo {
+    const char *name; /* "over-premultiplied", as the command line and files spell it */
+    const char *what; /* one line */
+    BlendEquation equation;
+} EquationInfo;
+
+const EquationInfo *equation_info(EquationId id);     /* static */
+const char *equation_factor_name(BlendFactor factor); /* "one-minus-src-alpha"; static */
+const char *equation_func_name(BlendFunc func);       /* "reverse-subtract"; static */
+
+/* A name of the table, or factors "SOURCE,DESTINATION[,SOURCE_ALPHA,DESTINATION_ALPHA]" in GL's
+ * words with '-' for '_', with ":FUNC[,FUNC_ALPHA]" behind where they are not both add:
+ * "dst-alpha,one,zero,one-minus-src-alpha", "one,one:max". BAD_INPUT with a message otherwise. */
+Result equation_parse(const char *text, BlendEquation *out);
+
+/* The table's name, or the factors as equation_parse reads them. out: room for
+ * EQUATION_TEXT bytes. */
+enum {
+    EQUATION_TEXT = 160
+};
+void equation_print(const BlendEquation *equation, char out[EQUATION_TEXT]);
+
+#endif
