@@ -71,6 +71,7 @@ BEGIN {
     upstream["pipeline"] = " pipeline" upstream["frame"]
     upstream["truth"] = " truth" upstream["frame"]
     upstream["gl"] = " gl" upstream["frame"]
+    upstream["web"] = " web pipeline" upstream["frame"]
     upstream["cli"] = " cli pipeline truth gl" upstream["report"]
 }
 {

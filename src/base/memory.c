@@ -2,7 +2,9 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#ifdef __linux__
 #include <sys/mman.h>
+#endif
 
 /* From this size on large pages are asked for: touching a frame's arrays page by page would
  * otherwise take a tenth of its time. */

@@ -146,10 +146,13 @@ static PlanRequest request_of(const PlanCommand *command)
     for (int i = 0; i < METHOD_COUNT; i++)
         space->methods[i] = !render->has_method || render->desc.method == (MethodId)i;
     for (int i = 0; i < PLAN_ACCUMS; i++)
-        space->accums[i] = render->accum < 0 || render->accum == i;
+        space->accums[i] =
+            render->settings[SETTING_ACCUM] < 0 || render->settings[SETTING_ACCUM] == i;
     for (int i = 0; i < PLAN_GBUFFERS; i++)
-        space->gbuffers[i] = render->gbuffer < 0 || render->gbuffer == i;
-    if (render->gbuffer < 0 && render->position == POSITION_BUFFER)
+        space->gbuffers[i] =
+            render->settings[SETTING_GBUFFER] < 0 || render->settings[SETTING_GBUFFER] == i;
+    if (render->settings[SETTING_GBUFFER] < 0 &&
+        render->settings[SETTING_POSITION] == POSITION_BUFFER)
         space->gbuffers[GBUFFER_COMPACT] = false; /* it stores no positions */
     return request;
 }

@@ -156,27 +156,10 @@ char *options_command_line(int argc, char **argv)
 
 RenderOptions options_default(void)
 {
-    return (RenderOptions){
-        .desc = {.width = 1280, .height = 720},
-        .profile = -1,
-        .cull = -1,
-        .normals = -1,
-        .shading = -1,
-        .ggx = -1,
-        .back_light = -1,
-        .depth_func = -1,
-        .depth_range = -1,
-        .peel_test = -1,
-        .gbuffer = -1,
-        .position = -1,
-        .depth = -1,
-        .accum = -1,
-        .sort = -1,
-        .weight = -1,
-        .post = -1,
-        .simd = -1,
-        .model_all = -1,
-    };
+    RenderOptions options = {.desc = {.width = 1280, .height = 720}, .profile = -1};
+    for (int i = 0; i < SETTING_COUNT; i++)
+        options.settings[i] = -1;
+    return options;
 }
 
 /* ---- the scene ---- */
@@ -211,40 +194,15 @@ static Result choose_camera(const char *text, const Scene *scene, int *out)
                        text, scene->camera_count - 1);
 }
 
-#define APPLY(member, Type)                                                                        \
-    do {                                                                                           \
-        if (options->member >= 0)                                                                  \
-            desc->member = (Type)options->member;                                                  \
-    } while (0)
-
 static Result apply_names(RenderOptions *options)
 {
-    static const PixelFormat depths[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
-    static const PixelFormat accums[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
-                                         FORMAT_RGBA8};
     RenderDesc *desc = &options->desc;
     if (options->profile == 1)
         render_desc_seed_profile(desc);
-    APPLY(cull, CullMode);
-    APPLY(normals, NormalMode);
-    APPLY(shading, ShadingModel);
-    APPLY(ggx, GgxForm);
-    APPLY(back_light, bool);
-    APPLY(depth_func, DepthFunc);
-    APPLY(depth_range, DepthRange);
-    APPLY(peel_test, PeelTest);
-    APPLY(gbuffer, GBufferFormat);
-    APPLY(position, PositionSource);
-    APPLY(sort, SortUnit);
-    APPLY(weight, WeightEquation);
-    APPLY(post, PostEffect);
-    APPLY(simd, SimdChoice);
-    APPLY(model_all, bool);
-    if (options->depth >= 0)
-        desc->depth = depths[options->depth];
-    if (options->accum >= 0)
-        desc->accum = accums[options->accum];
-    if (desc->gbuffer == GBUFFER_COMPACT && options->position == POSITION_BUFFER)
+    for (int i = 0; i < SETTING_COUNT; i++)
+        if (options->settings[i] >= 0)
+            setting_put(desc, (SettingId)i, options->settings[i]);
+    if (desc->gbuffer == GBUFFER_COMPACT && options->settings[SETTING_POSITION] == POSITION_BUFFER)
         return result_fail(RESULT_BAD_INPUT, "--position buffer: a compact G-buffer stores no "
                                              "positions, expected reconstruct");
     return RESULT_OK;

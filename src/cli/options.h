@@ -3,6 +3,7 @@
 #define PEEL_CLI_OPTIONS_H
 
 #include "frame/render_desc.h"
+#include "frame/setting.h"
 #include "scene/scene.h"
 
 #include <argp.h>
@@ -32,10 +33,8 @@ typedef struct RenderOptions {
     bool has_method, has_passes; /* one was given */
     double opacity, background[3];
     FmaChoice fma;
-    /* −1: as the profile or the default has it; else the index of the name that was given, which
-     * is the value in RenderDesc but for the formats. */
-    int profile, cull, normals, shading, ggx, back_light, depth_func, depth_range, peel_test,
-        gbuffer, position, depth, accum, sort, weight, post, simd, model_all;
+    int profile;                 /* −1: not given; 1: seed */
+    int settings[SETTING_COUNT]; /* −1: as the profile or the default has it; else what was given */
 } RenderOptions;
 
 /* Child parsers; their input is a RenderOptions. The first takes SCENE as its argument; the other

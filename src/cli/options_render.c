@@ -6,7 +6,6 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -282,65 +281,56 @@ error_t options_lights(const char *text, RenderDesc *desc)
     return error;
 }
 
-/* An option that chooses one of a few names: where its index goes in RenderOptions. */
-typedef struct NamedOption {
+/* Which setting an option is. */
+static const struct {
     int key;
-    const char *option;
-    size_t offset;
-    const char *names[6];
-} NamedOption;
-
-#define NAMED(key, option, member, ...)                                                            \
-    {                                                                                              \
-        key, option, offsetof(RenderOptions, member),                                              \
-        {                                                                                          \
-            __VA_ARGS__                                                                            \
-        }                                                                                          \
-    }
-
-static const NamedOption named_options[] = {
-    NAMED(KEY_PROFILE, "--profile", profile, "default", "seed"),
-    NAMED(KEY_CULL, "--cull", cull, "gltf", "seed", "none"),
-    NAMED(KEY_NORMALS, "--normals", normals, "faced", "kept"),
-    NAMED(KEY_SHADING, "--shading", shading, "ggx", "phong"),
-    NAMED(KEY_GGX, "--ggx", ggx, "source", "stable"),
-    NAMED(KEY_BACK_LIGHT, "--back-light", back_light, "off", "on"),
-    NAMED(KEY_DEPTH_FUNC, "--depth-func", depth_func, "less", "lequal"),
-    NAMED(KEY_DEPTH_RANGE, "--depth-range", depth_range, "gl", "zero-one", "reversed"),
-    NAMED(KEY_PEEL_TEST, "--peel-test", peel_test, "stored", "raw"),
-    NAMED(KEY_GBUFFER, "--gbuffer", gbuffer, "full", "seed", "compact"),
-    NAMED(KEY_POSITION, "--position", position, "buffer", "reconstruct"),
-    NAMED(KEY_DEPTH, "--depth", depth, "d32f", "d24", "d16"),
-    NAMED(KEY_ACCUM, "--accum", accum, "rgba32f", "rgba16f", "rgba16", "rgba8"),
-    NAMED(KEY_SORT, "--sort", sort, "objects", "triangles"),
-    NAMED(KEY_WEIGHT, "--weight", weight, "9", "7", "8", "10"),
-    NAMED(KEY_POST, "--post", post, "none", "edges"),
-    NAMED(KEY_SIMD, "--simd", simd, "auto", "scalar", "sse2", "avx2", "avx512"),
-    NAMED(KEY_MODEL, "--model", model_all, "needed", "all"),
+    SettingId setting;
+} named_options[] = {
+    {KEY_CULL, SETTING_CULL},
+    {KEY_NORMALS, SETTING_NORMALS},
+    {KEY_SHADING, SETTING_SHADING},
+    {KEY_GGX, SETTING_GGX},
+    {KEY_BACK_LIGHT, SETTING_BACK_LIGHT},
+    {KEY_DEPTH_FUNC, SETTING_DEPTH_FUNC},
+    {KEY_DEPTH_RANGE, SETTING_DEPTH_RANGE},
+    {KEY_PEEL_TEST, SETTING_PEEL_TEST},
+    {KEY_GBUFFER, SETTING_GBUFFER},
+    {KEY_POSITION, SETTING_POSITION},
+    {KEY_DEPTH, SETTING_DEPTH},
+    {KEY_ACCUM, SETTING_ACCUM},
+    {KEY_SORT, SETTING_SORT},
+    {KEY_WEIGHT, SETTING_WEIGHT},
+    {KEY_POST, SETTING_POST},
+    {KEY_SIMD, SETTING_SIMD},
+    {KEY_MODEL, SETTING_MODEL},
 };
+
+static error_t parse_profile(const char *text, RenderOptions *options)
+{
+    static const char *const names[] = {"default", "seed"};
+    return parse_choice("--profile", text, names, 2, &options->profile);
+}
 
 static error_t parse_named(int key, const char *argument, RenderOptions *options)
 {
     for (size_t i = 0; i < sizeof named_options / sizeof *named_options; i++) {
-        const NamedOption *named = &named_options[i];
-        int count = 0, *out = (int *)((char *)options + named->offset);
-        if (named->key != key)
+        SettingId id = named_options[i].setting;
+        if (named_options[i].key != key)
             continue;
-        while (count < 6 && named->names[count])
-            count++;
-        return parse_choice(named->option, argument, named->names, count, out);
+        char option[32];
+        snprintf(option, sizeof option, "--%s", setting_info(id)->name);
+        return parse_choice(option, argument, setting_info(id)->choices, setting_choice_count(id),
+                            &options->settings[id]);
     }
     return ARGP_ERR_UNKNOWN;
 }
 
 bool options_depth_format(const char *text, RenderOptions *options)
 {
-    const NamedOption *named = named_options;
-    while (named->key != KEY_DEPTH)
-        named++;
-    for (int i = 0; i < 6 && named->names[i]; i++)
-        if (strcmp(text, named->names[i]) == 0) {
-            options->depth = i;
+    const SettingInfo *depth = setting_info(SETTING_DEPTH);
+    for (int i = 0; i < setting_choice_count(SETTING_DEPTH); i++)
+        if (strcmp(text, depth->choices[i]) == 0) {
+            options->settings[SETTING_DEPTH] = i;
             return true;
         }
     return false;
@@ -396,6 +386,8 @@ static error_t parse_settings(int key, char *argument, struct argp_state *state)
         return options_fma(argument, &options->fma);
     case KEY_GL:
         return options_gl(argument);
+    case KEY_PROFILE:
+        return parse_profile(argument, options);
     case KEY_TILE:
         return parse_tile(argument, &desc->tile);
     case KEY_MEMORY:

@@ -131,7 +131,9 @@ enum {
     TILE_DEFAULT = 64,
     TILE_MAX = 256
 };
-#define RENDER_MEMORY_DEFAULT ((size_t)4 << 30) /* bytes */
+/* Bytes: 4 GiB, or half of a 32-bit address space. */
+#define RENDER_MEMORY_DEFAULT                                                                      \
+    (SIZE_MAX / 2 < (uint64_t)4 << 30 ? SIZE_MAX / 2 : (size_t)((uint64_t)4 << 30))
 
 typedef struct RenderDesc {
     int width, height; /* pixels, 1 … SIZE_MAX_PIXELS */
@@ -170,7 +172,7 @@ typedef struct RenderDesc {
     int tile;          /* ref: pixels per side, a power of two from TILE_MIN to TILE_MAX; 0:
                         * TILE_DEFAULT; the bits are the same */
     int threads;       /* 0: one per processor */
-    size_t max_memory; /* bytes a renderer may allocate for buffers; 0: 4 GiB */
+    size_t max_memory; /* bytes a renderer may allocate for buffers; 0: RENDER_MEMORY_DEFAULT */
 } RenderDesc;
 
 /* The depth format with the default filled in. */
