@@ -70,6 +70,7 @@ BEGIN {
     upstream["report"] = " report" upstream["study"]
     upstream["pipeline"] = " pipeline" upstream["frame"]
     upstream["truth"] = " truth" upstream["frame"]
+    upstream["library"] = " library pipeline truth compare peel.h" upstream["frame"]
     upstream["gl"] = " gl" upstream["frame"]
     upstream["cli"] = " cli pipeline truth gl" upstream["report"]
 }
