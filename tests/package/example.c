@@ -115,7 +115,7 @@ static PeelScene *make_scene(void)
     const PeelInstance instances[] = {
         {0, 0, floor_matrix}, {0, 1, red}, {0, 2, green}, {0, 3, blue}};
     const PeelLight light = {
-        .position = {2, 3, 4}, .color = {30, 29, 27}, .attenuation = {1, 0, 1}, .range = 20};
+        .position = {2, 3, 4}, .color = {70, 67, 63}, .attenuation = {1, 0, 1}, .range = 20};
     const PeelCamera camera = {.eye = {1.2, 1.1, 4.6},
                                .target = {0, -0.1, 0},
                                .up = {0, 1, 0},
