@@ -22,7 +22,7 @@
  * Functions use the default floating-point environment on x86-64 whatever the caller's is, and
  * leave the caller's as it was; elsewhere the caller must have the default one.
  *
- * Results depend on no processor: the same input gives the same bits everywhere.
+ * Pixels depend on no processor: the same input gives the same bits everywhere.
  *
  * Versions: semantic. Before 1.0 a change of the second number may change structures; the shared
  * library's name then changes too. */
@@ -159,7 +159,7 @@ typedef enum PeelArithmeticKind {
 } PeelArithmeticKind;
 
 typedef enum PeelPrecision {
-    PEEL_PRECISION_FLOAT = 0, /* products and sums are rounded to 24 bits */
+    PEEL_PRECISION_FLOAT = 0, /* operands, products and sums are rounded to 24 bits */
     PEEL_PRECISION_HALF,
     PEEL_PRECISION_DOUBLE,
     PEEL_PRECISION_CODES /* integers of the format; rgba8 and rgba16 only */
@@ -179,9 +179,11 @@ typedef enum PeelCodeProduct {
     PEEL_CODES_DRIVER, /* t = ab; t += t >> n; (t + 2^(n-1)) >> n */
     PEEL_CODES_FLOOR,  /* ab / (2^n - 1) */
     PEEL_CODES_SHIFT,  /* ab >> n */
-    PEEL_CODES_SHIFT_ROUND,  /* (ab + 2^(n-1)) >> n */
-    PEEL_CODES_SHIFT_MOST,   /* (ab + 2^n - 1) >> n */
-    PEEL_CODES_SHIFT_STRETCH /* a * (b + (b >> (n - 1))) >> n */
+    PEEL_CODES_SHIFT_ROUND,   /* (ab + 2^(n-1)) >> n */
+    PEEL_CODES_SHIFT_MOST,    /* (ab + 2^n - 1) >> n */
+    PEEL_CODES_SHIFT_STRETCH, /* a * (b + (b >> (n - 1))) >> n */
+    PEEL_CODES_SHIFT_PLUS,    /* a * (b + 1) >> n; b is the factor */
+    PEEL_CODES_RECIPROCAL     /* ab * (2^n + 1) >> 2n */
 } PeelCodeProduct;
 
 /* Zero: exact. */
@@ -192,11 +194,11 @@ typedef struct PeelArithmetic {
     PeelRounding rounding; /* of products and sums */
     PeelRounding store;    /* of the result into the format */
     PeelCodeProduct product;
-    bool fused;         /* the last product is added without being rounded */
+    bool fused;         /* the last product is added without being rounded; of PEEL_DRIVER: the
+                         * processor has fused multiply-add */
     bool flush;         /* denormal operands and results are zeros of their sign */
     bool source_stored; /* the source is first rounded to the format */
-    /* Of any kind: deliberate mistakes, as peel_arithmetic_parse sets them. */
-    uint32_t mistakes;
+    uint32_t mistakes;  /* deliberate ones, as peel_arithmetic_parse sets them */
 } PeelArithmetic;
 
 typedef struct PeelArithmeticInfo {
@@ -210,8 +212,10 @@ typedef struct PeelArithmeticInfo {
 PEEL_API size_t peel_arithmetic_count(void);
 PEEL_API PeelResult peel_arithmetic_info(size_t i, PeelArithmeticInfo *out);
 
-/* A name, or key=value pairs with commas between, for the fields: "precision=float,store=truncate",
- * "precision=codes,product=shift-round" (`peel blend check --help` has all of them). */
+/* A name, or key=value pairs with commas between: precision=float|half|double|codes, rounding= and
+ * store=nearest|truncate|away|up, product=nearest|driver|floor|shift|shift-round|shift-most|
+ * shift-stretch|shift-plus|reciprocal, fused=, flush= and source-stored=yes|no, mistake=NAME:
+ * "precision=codes,product=shift-round", "store=truncate". */
 PEEL_API PeelResult peel_arithmetic_parse(const char *text, PeelArithmetic *out);
 
 /* Blends count sources, 4 floats each, onto count pixels of one of the first six formats, aligned

@@ -26,7 +26,8 @@ _Static_assert((int)PEEL_CODES_DRIVER == CODES_DRIVER && (int)PEEL_CODES_FLOOR =
                    (int)PEEL_CODES_SHIFT == CODES_SHIFT &&
                    (int)PEEL_CODES_SHIFT_ROUND == CODES_SHIFT_ROUND &&
                    (int)PEEL_CODES_SHIFT_MOST == CODES_SHIFT_MOST &&
-                   (int)PEEL_CODES_SHIFT_STRETCH == CODES_SHIFT_STRETCH,
+                   (int)PEEL_CODES_SHIFT_STRETCH == CODES_SHIFT_STRETCH &&
+                   (int)PEEL_CODES_RECIPROCAL == CODES_RECIPROCAL,
                "one numbering");
 
 /* ---- equations ---- */
@@ -106,7 +107,7 @@ static PeelResult read_arithmetic(const char *function, const PeelArithmetic *fr
         {"precision", from->precision, PRECISION_CODES},
         {"rounding", from->rounding, BLEND_UPWARD},
         {"store", from->store, BLEND_UPWARD},
-        {"product", from->product, CODES_SHIFT_STRETCH},
+        {"product", from->product, CODES_RECIPROCAL},
     };
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (fields[i].value > fields[i].most)

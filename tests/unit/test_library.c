@@ -3,6 +3,9 @@
  * into it. */
 #include "library_calls.h"
 
+#include "blend/arithmetic.h"
+#include "blend/equation.h"
+
 #include <fenv.h>
 #include <math.h>
 #include <stdio.h>
@@ -225,6 +228,41 @@ START_TEST(test_blend_fields)
 }
 END_TEST
 
+/* Every named arithmetic and equation, in every format: refused or blended as behind the header. */
+START_TEST(test_blend_is_the_arithmetic)
+{
+    static const PixelFormat formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
+                                          FORMAT_RGBA8,   FORMAT_RG32F,   FORMAT_R32F};
+    const float sources[2][4] = {{0.1f, 0.7f, 0.31f, 0.43f}, {1.5f, -0.25f, 0x1p-130f, 1.0f}};
+    int blended = 0, refused = 0;
+    for (size_t a = 0; a < arithmetic_count(); a++)
+        for (int e = 0; e < EQUATION_COUNT; e++)
+            for (int f = 0; f < 6; f++) {
+                const Arithmetic *arithmetic = &arithmetic_info(a)->arithmetic;
+                const BlendEquation *equation = &equation_info((EquationId)e)->equation;
+                uint32_t expected[8] = {0x3e99999a, 0x3f19999a, 0x3f333333, 0x3e4ccccd,
+                                        0x3f000001, 0x3f7fffff, 0x3dcccccd, 0x3f666666},
+                         pixels[8];
+                PeelArithmeticInfo info;
+                PeelEquation named;
+                memcpy(pixels, expected, sizeof pixels);
+                GOOD(peel_arithmetic_info(a, &info));
+                GOOD(peel_equation_parse(peel_equation_name((size_t)e, NULL), &named));
+                PeelResult result =
+                    peel_blend(&info.arithmetic, &named, (PeelFormat)f, 2, sources[0], pixels);
+                bool refuses = arithmetic_refuses(arithmetic, equation, formats[f]) != NULL;
+                if (!refuses)
+                    arithmetic_blend(arithmetic, equation, formats[f], 2, sources, expected);
+                ck_assert_int_eq(result, refuses ? PEEL_UNSUPPORTED : PEEL_OK);
+                ck_assert_mem_eq(pixels, expected, sizeof pixels);
+                blended += !refuses;
+                refused += refuses;
+            }
+    ck_assert_int_gt(blended, 1000);
+    ck_assert_int_gt(refused, 100);
+}
+END_TEST
+
 /* Rounding upward, and flushing, in the caller: neither reaches the library, and both stay. */
 START_TEST(test_environment)
 {
@@ -300,6 +338,7 @@ int main(void)
     tcase_add_test(tcase, test_names);
     tcase_add_test(tcase, test_blend);
     tcase_add_test(tcase, test_blend_fields);
+    tcase_add_test(tcase, test_blend_is_the_arithmetic);
     tcase_add_test(tcase, test_environment);
     tcase_add_test(tcase, test_compare);
     suite_add_tcase(suite, tcase);
