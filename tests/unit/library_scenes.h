@@ -12,7 +12,7 @@ static const float normals[12] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
 static const float uvs[8] = {0, 1, 1, 1, 1, 0, 0, 0};
 static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
 static const uint8_t codes[16] = {255, 0, 0,   255, 0,   255, 0,   255,
-                                  0,   0, 255, 255, 255, 255, 255, 255};
+                                  0,   0, 255, 255, 128, 128, 128, 255};
 static const double nearer[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.25, 0, 0.5, 1};
 
 /* A pane of glass in front of a textured, opaque square; every part is the test's to spoil. */

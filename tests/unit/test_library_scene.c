@@ -1,6 +1,8 @@
 /* peel.h, scenes: what is said of bad arrays, and what may be left out. */
 #include "library_scenes.h"
 
+#include "scene/texture.h"
+
 /* One field spoilt: expects the message. */
 #define SPOILT(text, spoil)                                                                        \
     do {                                                                                           \
@@ -125,6 +127,47 @@ START_TEST(test_scene_camera)
 }
 END_TEST
 
+enum {
+    SIDE = 24
+};
+
+static void render(const Small *small, float image[SIDE * SIDE * 4])
+{
+    const PeelSettings settings = {.width = SIDE, .height = SIDE};
+    PeelScene *scene = create(small);
+    GOOD(peel_scene_render(scene, &settings, NULL, &(PeelImages){.linear = image}, NULL));
+    peel_scene_free(scene);
+}
+
+/* Every field of a texture and the threshold of a mask can be seen; floats and codes are the same
+ * texels. */
+START_TEST(test_scene_surfaces)
+{
+    static float image[7][SIDE * SIDE * 4];
+    float texels[16];
+    Small small[7];
+    for (int i = 0; i < 7; i++)
+        small_scene(&small[i]);
+    small[1].texture.nearest = true;
+    small[2].texture.srgb = false;
+    small[3].texture.wrap_s = PEEL_CLAMP;
+    small[4].texture.wrap_t = PEEL_MIRROR;
+    small[5].materials[0].alpha_mode = PEEL_MASK;
+    small[5].materials[0].alpha_cutoff = 1.25f;
+    for (int i = 0; i < 16; i++)
+        texels[i] = texture_decode(i % 4 == 3 ? TEXTURE_LINEAR : TEXTURE_SRGB, codes[i], 255);
+    small[6].texture.codes = NULL;
+    small[6].texture.texels = texels;
+    for (int i = 0; i < 7; i++) {
+        render(&small[i], image[i]);
+        if (i < 6)
+            for (int k = 0; k < i; k++)
+                ck_assert_msg(memcmp(image[i], image[k], sizeof image[i]) != 0, "%d and %d", i, k);
+    }
+    ck_assert_mem_eq(image[6], image[0], sizeof image[0]);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("library scenes");
@@ -133,6 +176,7 @@ int main(void)
     tcase_add_test(tcase, test_scene_bad);
     tcase_add_test(tcase, test_scene_sparse);
     tcase_add_test(tcase, test_scene_camera);
+    tcase_add_test(tcase, test_scene_surfaces);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }
