@@ -6,6 +6,7 @@
 #include "ref/truth/truth.h"
 #include "scene/generate.h"
 
+#include <fenv.h>
 #include <pthread.h>
 #include <stdio.h>
 
@@ -110,6 +111,31 @@ START_TEST(test_render_is_the_renderer)
                truth_render);
     peel_scene_free(library);
     scene_free(&scene);
+}
+END_TEST
+
+/* Rounding upward in the caller does not reach the scene, its camera or the renderers' threads. */
+START_TEST(test_render_environment)
+{
+    static float images[2][2][PIXELS * 4];
+    static const PeelSettings settings = {.width = WIDTH, .height = HEIGHT};
+    PeelSettings truth = settings;
+    truth.renderer = PEEL_TRUTH;
+    for (int i = 0; i < 2; i++) {
+        Small small;
+        small_scene(&small);
+        small.camera.eye[0] = 1.1;
+        ck_assert_int_eq(fesetround(i == 0 ? FE_TONEAREST : FE_UPWARD), 0);
+        PeelScene *scene = create(&small);
+        GOOD(
+            peel_scene_render(scene, &settings, NULL, &(PeelImages){.linear = images[i][0]}, NULL));
+        GOOD(peel_scene_render(scene, &truth, NULL, &(PeelImages){.linear = images[i][1]}, NULL));
+        peel_scene_free(scene);
+    }
+    fesetround(FE_TONEAREST);
+#if defined(__SSE2__)
+    ck_assert_mem_eq(images[0], images[1], sizeof images[0]);
+#endif
 }
 END_TEST
 
@@ -341,6 +367,7 @@ int main(void)
     TCase *tcase = tcase_create("library rendering");
     tcase_set_timeout(tcase, 120);
     tcase_add_test(tcase, test_render_is_the_renderer);
+    tcase_add_test(tcase, test_render_environment);
     tcase_add_test(tcase, test_render_buffers);
     tcase_add_test(tcase, test_render_depths);
     tcase_add_test(tcase, test_render_bound);
