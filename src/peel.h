@@ -92,8 +92,8 @@ PEEL_API size_t peel_format_pixel_bytes(PeelFormat format); /* likewise */
  * above, rounded to float. pixel: in that format, at any address. channel: from 0. */
 PEEL_API PeelResult peel_value(PeelFormat format, const void *pixel, int channel, float *out);
 
-/* count vec4 to and from pixels of one of the first six formats, as llvmpipe's render targets and
- * texel fetches do (ref/pipeline/NUMBERS.md): 8 and 16 bits round to nearest even, halves are
+/* count vec4 to and from pixels of one of the first six formats, as the render targets and texel
+ * fetches of Mesa's llvmpipe do: 8 and 16 bits round to nearest even, halves are
  * truncated toward zero, NaN is code 0, channels that are not stored are fetched as 0, alpha as 1.
  * (To round halves to nearest even, blend them with the arithmetic "exact" and the equation
  * "one,zero".) values: 4 * count floats; pixels: count pixels. count may be 0. */
@@ -136,8 +136,8 @@ typedef enum PeelFunc {
     PEEL_FUNC_COUNT
 } PeelFunc;
 
-/* func(source * factor, destination * factor); all zero is no useful equation: it gives 0. Formats
- * without alpha read a destination alpha of 1. */
+/* func(source * factor, destination * factor). Formats without alpha read a destination alpha of 1;
+ * what they do not store is dropped. All zero gives 0. */
 typedef struct PeelEquation {
     PeelFactor source, destination;             /* of red, green and blue */
     PeelFactor source_alpha, destination_alpha; /* of alpha */
@@ -174,11 +174,11 @@ typedef enum PeelRounding {
 
 /* a * b / (2^n - 1) of integers of n bits. */
 typedef enum PeelCodeProduct {
-    PEEL_CODES_NEAREST =
-        0,             /* t = ab + 2^(n-1); (t + (t >> n)) >> n: the exact quotient's nearest */
-    PEEL_CODES_DRIVER, /* t = ab; t += t >> n; (t + 2^(n-1)) >> n */
-    PEEL_CODES_FLOOR,  /* ab / (2^n - 1) */
-    PEEL_CODES_SHIFT,  /* ab >> n */
+    /* t = ab + 2^(n-1); (t + (t >> n)) >> n: the exact quotient to nearest */
+    PEEL_CODES_NEAREST = 0,
+    PEEL_CODES_DRIVER,        /* t = ab; t += t >> n; (t + 2^(n-1)) >> n */
+    PEEL_CODES_FLOOR,         /* ab / (2^n - 1) */
+    PEEL_CODES_SHIFT,         /* ab >> n */
     PEEL_CODES_SHIFT_ROUND,   /* (ab + 2^(n-1)) >> n */
     PEEL_CODES_SHIFT_MOST,    /* (ab + 2^n - 1) >> n */
     PEEL_CODES_SHIFT_STRETCH, /* a * (b + (b >> (n - 1))) >> n */

@@ -141,6 +141,9 @@ planted ref/truth/truth.c '#include "number/blend.h"'
 planted ref/truth/soup.h '#include "../../src/number/op.h"'
 planted ref/truth/coverage.c '#include "ref/pipeline/setup.h"'
 planted gl/passes.c '#include "compare/metrics.h"'
+planted src/library/convert.c '#include "report/json.h"'
+planted src/compare/store.c '#include "library/convert.h"'
+planted src/frame/view.c '#include "peel.h"'
 planted gl/passes.c '#include "no/such/file.h"'
 # A header that truth may include must not bring the arithmetic along.
 cp "$copy/src/number/format.h" "$copy/format.h"

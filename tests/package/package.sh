@@ -59,6 +59,19 @@ while read -r name; do
     esac
 done <"$work/needed"
 
+# The header alone, as the language's standards have it.
+echo '#include <peel.h>' >"$work/header.c"
+for standard in c99 c11 c17; do
+    # shellcheck disable=SC2086 # a list of words
+    "$cc" -std=$standard $warnings -Wstrict-prototypes -I"$prefix/include" -fsyntax-only \
+        "$work/header.c" || fail "peel.h in $standard"
+done
+for standard in c++11 c++20; do
+    # shellcheck disable=SC2086 # a list of words
+    "$cxx" -std=$standard $warnings -I"$prefix/include" -fsyntax-only -x c++ "$work/header.c" ||
+        fail "peel.h in $standard"
+done
+
 # An empty folder with the user's files; the program in README among them.
 mkdir "$work/user"
 cp "$source/tests/package/CMakeLists.txt" "$source/tests/package/example.c" \
