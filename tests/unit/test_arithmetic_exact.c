@@ -1,12 +1,8 @@
 /* ARITHMETIC_EXACT against rational arithmetic, over all formats, functions and factors. */
 #include "testing.h"
 
-#include "base/random.h"
-#include "blend/arithmetic.h"
-#include "number/op.h"
+#include "blend_operands.h"
 #include "rational_round.h"
-
-#include <stdio.h>
 
 static const PixelFormat formats[] = {FORMAT_RGBA8,   FORMAT_RGBA16, FORMAT_RGBA16F,
                                       FORMAT_RGBA32F, FORMAT_RG32F,  FORMAT_R32F};
@@ -17,70 +13,6 @@ enum {
 };
 
 static const Arithmetic exact = {.kind = ARITHMETIC_EXACT};
-
-static float with_sign(Random *random, double x)
-{
-    return (float)(random_bits(random) & 1 ? -x : x);
-}
-
-/* Numbers of few digits make products and sums that are exactly half-way. */
-static float number(Random *random)
-{
-    static const float specials[] = {0.0f,
-                                     -0.0f,
-                                     1.0f,
-                                     -1.0f,
-                                     0x1p-149f,
-                                     -0x1p-149f,
-                                     0x1p-126f,
-                                     0x1.fffffcp-127f,
-                                     0x1.fffffep127f,
-                                     65504.0f,
-                                     65519.996f,
-                                     65520.0f,
-                                     0x1p-24f,
-                                     0x1p-25f,
-                                     0x1.8p-25f,
-                                     0x1p-14f,
-                                     0.99999994f,
-                                     1.0000001f,
-                                     0.99951172f,
-                                     0x1.fffffep-26f};
-    uint64_t bits = random_bits(random);
-    int digits = 1 + (int)(bits >> 8 & 15) % 14;
-    switch (bits & 7) {
-    case 0:
-        return (float)random_unit(random);
-    case 1:
-        return with_sign(random, random_range(random, 0.0, 8.0));
-    case 2:
-        return specials[(bits >> 8) % (sizeof specials / sizeof *specials)];
-    case 3:
-        return op_from_bits((uint32_t)(bits >> 32) &
-                            0xbfffffffu); /* finite, any exponent below 2 */
-    case 4:
-        return (float)((double)(bits >> 32 & 255) / 255.0);
-    case 5:
-        return with_sign(random, ldexp(1.0 + random_unit(random), (int)(bits >> 32 & 63) - 40));
-    default:
-        return with_sign(random, ldexp((double)(bits >> 32 & ((1u << digits) - 1)),
-                                       (int)(bits >> 56 & 15) - 14));
-    }
-}
-
-static BlendEquation any_equation(Random *random)
-{
-    if (random_bits(random) % 4 == 0)
-        return equation_info((EquationId)(random_bits(random) % EQUATION_COUNT))->equation;
-    BlendEquation e;
-    e.source = (BlendFactor)(random_bits(random) % FACTOR_COUNT);
-    e.destination = (BlendFactor)(random_bits(random) % FACTOR_COUNT);
-    e.source_alpha = (BlendFactor)(random_bits(random) % FACTOR_COUNT);
-    e.destination_alpha = (BlendFactor)(random_bits(random) % FACTOR_COUNT);
-    e.func = (BlendFunc)(random_bits(random) % BLEND_FUNC_COUNT);
-    e.func_alpha = (BlendFunc)(random_bits(random) % BLEND_FUNC_COUNT);
-    return e;
-}
 
 /* ---- the expected result ---- */
 
@@ -272,12 +204,12 @@ static void report(PixelFormat format, const BlendEquation *e, const float s[4],
 /* One blend of random operands in the format; returns how many channels were halfway. */
 static int check_one(PixelFormat format, Random *random, Operands *o)
 {
-    BlendEquation e = any_equation(random);
+    BlendEquation e = operands_equation(random);
     float source[1][4], d[4];
     do
         for (int i = 0; i < 4; i++) {
-            source[0][i] = number(random);
-            d[i] = random_bits(random) % 16 ? number(random) : -source[0][i];
+            source[0][i] = operands_number(random);
+            d[i] = random_bits(random) % 16 ? operands_number(random) : -source[0][i];
         }
     while (has_negative_zero(source[0], d));
     unsigned char pixel[16], blended[16];
