@@ -90,7 +90,7 @@ bool arithmetic_codes_blend(const Arithmetic *arithmetic, const BlendEquation *e
 
 typedef enum EarlyOut {
     EARLY_OUT_NO = 0,
-    EARLY_OUT_SOURCE, /* the source is stored */
+    EARLY_OUT_SOURCE, /* the source's product is stored */
     EARLY_OUT_KEEP    /* the pixel is left */
 } EarlyOut;
 

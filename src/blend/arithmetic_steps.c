@@ -185,7 +185,7 @@ uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *
     }
     compute(arithmetic, &o, &part, out);
     if (early == EARLY_OUT_SOURCE)
-        out->sum = o.source;
+        out->sum = out->source_product;
     out->sum = mistake_sum(arithmetic, color, out->sum);
     return arithmetic_bits(info->kind, stored_sum(arithmetic, info, o.one, out->sum));
 }

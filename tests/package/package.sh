@@ -76,7 +76,7 @@ done
 mkdir "$work/user"
 cp "$source/tests/package/CMakeLists.txt" "$source/tests/package/example.c" \
     "$source/tests/package/example.cpp" "$work/user"
-sed -n '/^### The library/,/^### /{/^    #include/,/^    }$/s/^    //p;}' "$source/README.md" \
+sed -n '/^### The library/,/^##/{/^    #include/,/^    }$/s/^    //p;}' "$source/README.md" \
     >"$work/user/readme.c"
 lines=$(wc -l <"$work/user/readme.c")
 [ "$lines" -ge 10 ] && [ "$lines" -le 30 ] || fail "README's program has $lines lines"
