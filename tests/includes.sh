@@ -47,7 +47,7 @@ function report(place, text) {
 }
 # First forbidden header that can be reached from file, "" if none.
 function reaches_arithmetic(file, visited, i, found, count, list) {
-    if (file ~ /^src\/number\/(op|blend)/)
+    if (file ~ /^src\/(number\/(op|blend)|blend\/)/)
         return file
     if (file in visited)
         return ""
@@ -70,6 +70,7 @@ BEGIN {
     upstream["report"] = " report" upstream["study"]
     upstream["pipeline"] = " pipeline" upstream["frame"]
     upstream["truth"] = " truth" upstream["frame"]
+    upstream["library"] = " library pipeline truth compare peel.h" upstream["frame"]
     upstream["gl"] = " gl" upstream["frame"]
     upstream["web"] = " web pipeline" upstream["frame"]
     upstream["cli"] = " cli pipeline truth gl" upstream["report"]
@@ -138,9 +139,13 @@ planted src/study/threeway.c '#include "gl/gl_renderer.h"'
 planted src/report/html.c '#include "cli/options.h"'
 planted ref/pipeline/setup.c '#include "ref/truth/truth.h"'
 planted ref/truth/truth.c '#include "number/blend.h"'
+planted ref/truth/truth.c '#include "blend/arithmetic.h"'
 planted ref/truth/soup.h '#include "../../src/number/op.h"'
 planted ref/truth/coverage.c '#include "ref/pipeline/setup.h"'
 planted gl/passes.c '#include "compare/metrics.h"'
+planted src/library/convert.c '#include "report/json.h"'
+planted src/compare/store.c '#include "library/convert.h"'
+planted src/frame/view.c '#include "peel.h"'
 planted gl/passes.c '#include "no/such/file.h"'
 # A header that truth may include must not bring the arithmetic along.
 cp "$copy/src/number/format.h" "$copy/format.h"

@@ -135,11 +135,11 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass
         .fused = !desc->unfused,
         .reversed = desc->depth_range == DEPTH_RANGE_REVERSED,
         .depth_format = render_desc_depth(desc),
-        .layout = render_desc_layout(desc),
     };
-    Result result = view_build(scene, desc, &out->view);
+    Result result = view_build(scene, desc, &out->view); /* checks desc, too */
     if (result != RESULT_OK)
         return result;
+    out->layout = render_desc_layout(desc);
     if (desc->mutations)
         mutate_view(scene, desc, &out->view);
     /* A mistake may depend on what a right frame does not need. */

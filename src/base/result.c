@@ -5,7 +5,7 @@
 #include <string.h>
 
 static _Thread_local char message[1024];
-static bool warnings = true;
+static bool warnings;
 
 const char *result_text(Result result)
 {

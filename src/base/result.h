@@ -25,7 +25,8 @@ Result result_fail(Result code, const char *format, ...) __attribute__((format(p
 /* The calling thread's latest message, "" if there is none. Valid until its next result_fail. */
 const char *result_message(void);
 
-/* One line "peel: warning: ..." on stderr, unless warnings are off. */
+/* One line "peel: warning: ..." on stderr, once a program has enabled them: the library prints
+ * nothing. */
 void result_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void result_warnings_enable(bool enable);
 

@@ -1,5 +1,6 @@
 /* peel: the command line. One file per command; see bind.h. */
 #include "base/file.h"
+#include "base/result.h"
 #include "cli/bind.h"
 #include "cli/options.h"
 
@@ -106,6 +107,7 @@ int main(int argc, char **argv)
 {
     open_standard_streams();
     handle_signals();
+    result_warnings_enable(true);
     int code = run(argc, argv);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "peel: standard output: write failed\n");

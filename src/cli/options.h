@@ -70,9 +70,6 @@ error_t options_size(const char *text, RenderDesc *out);
 error_t options_lights(const char *text, RenderDesc *out);
 error_t options_method(const char *text, RenderDesc *out);
 error_t options_passes(const char *text, RenderDesc *out);
-enum {
-    OPTIONS_THREADS_MAX = 256
-};
 error_t options_fma(const char *text, FmaChoice *out);
 /* Whether text is a value of --depth, which it then sets: for a command whose --depth takes files,
  * too. */

@@ -381,7 +381,7 @@ static error_t parse_settings(int key, char *argument, struct argp_state *state)
     case KEY_DRAW_ORDER:
         return parse_draw_order(argument, desc);
     case KEY_NODES:
-        return options_count("--nodes-per-pixel", argument, 1, 4096, &desc->nodes_per_pixel);
+        return options_count("--nodes-per-pixel", argument, 1, NODES_MAX, &desc->nodes_per_pixel);
     case KEY_FMA:
         return options_fma(argument, &options->fma);
     case KEY_GL:
@@ -412,7 +412,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         options->has_passes = true;
         return options_passes(argument, desc);
     case KEY_THREADS:
-        return options_count("--threads", argument, 1, OPTIONS_THREADS_MAX, &desc->threads);
+        return options_count("--threads", argument, 1, THREADS_MAX, &desc->threads);
     case ARGP_KEY_ARG:
         if (options->scene_path)
             return options_error("'%s': expected one scene, already given as '%s'", argument,

@@ -3,6 +3,7 @@
 #ifndef PEEL_FRAME_RENDER_DESC_H
 #define PEEL_FRAME_RENDER_DESC_H
 
+#include "base/result.h"
 #include "number/format.h"
 
 #include <stdbool.h>
@@ -127,6 +128,12 @@ enum {
     PASSES_MAX = 4096
 };
 enum {
+    THREADS_MAX = 256
+};
+enum {
+    NODES_MAX = 4096
+}; /* per pixel, on average */
+enum {
     TILE_MIN = 8,
     TILE_DEFAULT = 64,
     TILE_MAX = 256
@@ -174,6 +181,9 @@ typedef struct RenderDesc {
     int threads;       /* 0: one per processor */
     size_t max_memory; /* bytes a renderer may allocate for buffers; 0: RENDER_MEMORY_DEFAULT */
 } RenderDesc;
+
+/* Whether every field is in its range, whatever the scene; BAD_INPUT with a message. */
+Result render_desc_check(const RenderDesc *desc);
 
 /* The depth format with the default filled in. */
 static inline PixelFormat render_desc_depth(const RenderDesc *desc)

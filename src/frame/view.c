@@ -121,30 +121,12 @@ static bool can_light(const Light *light, const RenderDesc *desc)
 
 static Result check(const Scene *scene, const RenderDesc *desc)
 {
-    if (desc->width < 1 || desc->height < 1 || desc->width > SIZE_MAX_PIXELS ||
-        desc->height > SIZE_MAX_PIXELS)
-        return result_fail(RESULT_BAD_INPUT, "size %d×%d: expected 1 to %d pixels a side",
-                           desc->width, desc->height, SIZE_MAX_PIXELS);
-    if (desc->passes < 0 || desc->passes > PASSES_MAX)
-        return result_fail(RESULT_BAD_INPUT, "%d passes: expected 0 (auto) to %d", desc->passes,
-                           PASSES_MAX);
+    Result result = render_desc_check(desc);
+    if (result != RESULT_OK)
+        return result;
     if (desc->camera < 0 || (size_t)desc->camera >= scene->camera_count)
         return result_fail(RESULT_BAD_INPUT, "camera %d: the scene has %zu", desc->camera,
                            scene->camera_count);
-    if (desc->accum >= FORMAT_COUNT || format_info(desc->accum)->channels != 4)
-        return result_fail(RESULT_BAD_INPUT, "accumulation in format %d: expected four channels",
-                           (int)desc->accum);
-    PixelFormat depth = render_desc_depth(desc);
-    if (depth != FORMAT_D32F && depth != FORMAT_D24 && depth != FORMAT_D16)
-        return result_fail(RESULT_BAD_INPUT, "depth in format %d: expected d32f, d24 or d16",
-                           (int)depth);
-    if (desc->tile != 0 &&
-        (desc->tile < TILE_MIN || desc->tile > TILE_MAX || (desc->tile & (desc->tile - 1)) != 0))
-        return result_fail(RESULT_BAD_INPUT,
-                           "tiles of %d pixels: expected a power of two, %d to %d", desc->tile,
-                           TILE_MIN, TILE_MAX);
-    if (!isfinite(desc->time) || fabs(desc->time) > 1e6)
-        return result_fail(RESULT_BAD_INPUT, "time %g: expected at most 1e6 seconds", desc->time);
     if (scene_triangle_count(scene) >= UINT32_MAX)
         return result_fail(RESULT_BAD_INPUT, "more than 2^32 − 2 triangles");
     return RESULT_OK;

@@ -55,8 +55,8 @@ typedef struct View {
 /* Draw.normal_matrix of a matrix that takes a mesh to view space. */
 void view_normal_matrix(const Matrix *model_view, float out[9]);
 
-/* Fails with BAD_INPUT when desc names no camera of the scene, or a size, pass limit, time or
- * accumulation format out of range. */
+/* Fails with BAD_INPUT when desc is out of range (render_desc_check) or names no camera of the
+ * scene. */
 Result view_build(const Scene *scene, const RenderDesc *desc, View *out);
 void view_free(View *view);
 

@@ -165,7 +165,6 @@ END_TEST
 
 int main(void)
 {
-    result_warnings_enable(false); /* lists without room */
     Suite *suite = suite_create("paths");
     TCase *tcase = tcase_create("paths");
     tcase_set_timeout(tcase, 300);

@@ -187,7 +187,6 @@ int main(void)
     uint64_t only = environment("PEEL_TEST_SEED", 0);
     first_seed = only ? only : 1;
     wanted = environment("PEEL_TEST_COUNT", only ? 1 : 240);
-    result_warnings_enable(false); /* lists without room */
     Suite *suite = suite_create("random scenes");
     TCase *tcase = tcase_create("bits");
     tcase_set_timeout(tcase, 0); /* CTest's */

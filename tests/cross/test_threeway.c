@@ -442,7 +442,6 @@ END_TEST
 
 int main(void)
 {
-    result_warnings_enable(false);
     Suite *suite = suite_create("threeway");
     TCase *tcase = tcase_create("threeway");
     tcase_set_timeout(tcase, 300);

@@ -99,11 +99,11 @@ static void warn(void)
     result_warn("%s has 2\nlines", "it");
 }
 
-static void warn_disabled(void)
+static void warn_enabled(void)
 {
-    result_warnings_enable(false);
-    warn();
     result_warnings_enable(true);
+    warn();
+    result_warnings_enable(false);
 }
 
 static void progress(void)
@@ -115,8 +115,8 @@ static void progress(void)
 
 START_TEST(test_stderr)
 {
-    ck_assert_str_eq(captured(warn), "peel: warning: it has 2 lines\n");
-    ck_assert_str_eq(captured(warn_disabled), "");
+    ck_assert_str_eq(captured(warn_enabled), "peel: warning: it has 2 lines\n");
+    ck_assert_str_eq(captured(warn), "");
     ck_assert_str_eq(captured(progress), ""); /* not a terminal */
 }
 END_TEST
