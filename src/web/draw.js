@@ -86,12 +86,15 @@ draw.distance = (depth) => {
 draw.distances = () => {
     if (draw.distances.frame === app.frame)
         return draw.distances.range;
+    const drawn = app.frame.buffers.filter((one) => /^(opaque|peel\.\d+)\.depth$/.test(one.name));
+    if (app.frame.buffer("peel.0.depth") === undefined && walk.limits(0))
+        drawn.push(walk.limit(0, 0), walk.limit(0, 1));
     let low = Infinity, high = 0;
-    for (const buffer of app.frame.buffers.filter((one) => /^(opaque|peel.\d+).depth$/.test(one.name)))
+    for (const buffer of drawn)
         for (let i = 0; i < buffer.data.length; i++) {
-            if (draw.isEmpty(buffer, i))
+            const z = draw.isEmpty(buffer, i) ? NaN : draw.distance(draw.value(buffer, i));
+            if (!Number.isFinite(z))
                 continue;
-            const z = draw.distance(draw.value(buffer, i));
             low = Math.min(low, z);
             high = Math.max(high, z);
         }
@@ -127,6 +130,13 @@ draw.normal = (buffer) => draw.picture(buffer,
         const n = [0, 1, 2].map((k) => k < buffer.channels ? draw.value(buffer, at + k) : 0);
         return (buffer.channels === 2 ? draw.octahedral(n[0], n[1]) : n).map((v) => 127.5 * v + 127.5);
     }, draw.describe(buffer, buffer.channels === 2 ? "uv" : "xyz"));
+
+/* Of the dual methods: the direction in two channels, then opacity and a mask. */
+draw.octahedrals = (buffer) => draw.picture(buffer, "Red to the right, green up, blue to the eye.",
+    (at) => draw.value(buffer, at + 3) === 0 ? null
+        : draw.octahedral(draw.value(buffer, at), draw.value(buffer, at + 1)).map((v) =>
+            127.5 * v + 127.5),
+    draw.describe(buffer, ["u", "v", "\u03b1", "mask"]));
 
 draw.position = (buffer) => {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -278,4 +288,31 @@ draw.counts = (buffer, data, what, label) => {
     return draw.picture({ ...buffer, channels: 1 }, `None (hatched) to ${most} (dark).`,
         (at) => data[at] === 0 ? null : draw.ramp(data[at] / Math.max(most, 1)),
         (x, y) => [[label, data[y * buffer.width + x], "count", what]]);
+};
+
+/* A row of the picture seen from above: distance upwards. rows: {buffer, color, text} of depths;
+ * text "" is not in the legend. A list of one, or of none without a pixel. */
+draw.slice = (rows) => {
+    if (!app.pixel)
+        return [];
+    const [low, high] = draw.distances(), { width } = app.frame, height = Math.ceil(width * 0.45);
+    const rgba = new Uint8ClampedArray(4 * width * height);
+    const put = (x, y, color) => {
+        for (let dy = 0; dy < 2; dy++)
+            if (y + dy >= 0 && y + dy < height)
+                rgba.set([...color, 255], 4 * ((y + dy) * width + x));
+    };
+    for (let y = 0; y < height; y += 4)
+        put(app.pixel[0], y, [150, 150, 150]);
+    for (const { buffer, color } of rows)
+        for (let x = 0; x < width; x++) {
+            const i = app.pixel[1] * width + x;
+            if (draw.isEmpty(buffer, i))
+                continue;
+            const t = (draw.distance(draw.value(buffer, i)) - low) / Math.max(high - low, 1e-9);
+            put(x, Math.round((height - 4) * (1 - t)) + 1, color);
+        }
+    const legend = rows.filter(({ text }) => text).map((row) => ({ ...row, pattern: "plain" }));
+    return [{ title: `The pixel's row from above: the eye is below`, picture: {
+        width, height, rgba, legend, plain: true, describe: () => [] } }];
 };

@@ -95,7 +95,8 @@ steps.show = () => {
 steps.showPictures = (step) => {
     const made = step.pictures().map((one) => one instanceof Node ? one
                                               : figure.make(one.title, one.picture));
-    steps.at("pictures").className = `pictures count-${Math.min(made.length, 4)}`;
+    const count = step.kind === "naive" ? 3 : Math.min(made.length, 4);
+    steps.at("pictures").className = `pictures count-${count}`;
     steps.at("pictures").replaceChildren(...made);
     figure.update();
 };
@@ -126,7 +127,11 @@ steps.showMethods = () => {
 };
 
 app.on("step", steps.show);
-app.on("pixel", steps.showEquation);
+app.on("pixel", () => {
+    steps.showEquation();
+    if (document.querySelector("#step-pictures .plain"))
+        steps.showPictures(app.steps[app.step]);
+});
 app.on("frame", steps.showMethods);
 app.on("view", () => steps.play(false));
 steps.bind();

@@ -91,7 +91,9 @@ walk.truth = () => walk.step({
     text: walk.truthText(),
     buffers: ["accum", "display"],
     pictures: () => sides.truth()
-        ? [{ title: "Truth", picture: draw.light(walk.truthBuffer(), "Linear light, as the display " +
+        ? [...walk.show("final", "This frame", (buffer) => draw.light(buffer, "Linear light, as the " +
+                                                                  "display would show it.")),
+           { title: "Truth", picture: draw.light(walk.truthBuffer(), "Linear light, as the display " +
                                                   "would show it.") },
            { title: "Difference of this frame", picture: draw.error(app.frame.buffer("final"),
                                                                     sides.truth(), "truth.error") }]
