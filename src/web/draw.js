@@ -314,16 +314,20 @@ draw.slice = (rows) => {
     const layers = distances.filter((_, row) => rows[row].buffer.name !== "opaque.depth");
     const [low, high] = draw.extremes(layers.flat(), draw.distances());
     const rgba = new Uint8ClampedArray(4 * width * height);
-    const put = (x, y, color) => {
-        for (let dy = 0; dy < 2; dy++)
-            if (y + dy >= 0 && y + dy < height)
-                rgba.set([...color, 255], 4 * ((y + dy) * width + x));
+    const put = (x, y, end, color) => {
+        for (; y <= end; y++)
+            if (y >= 0 && y < height)
+                rgba.set([...color, 255], 4 * (y * width + x));
     };
     for (let y = 0; y < height; y += 4)
-        put(app.pixel[0], y, [150, 150, 150]);
-    rows.forEach(({ color }, row) => distances[row].forEach((z, x) => {
-        if (z <= high && z >= low)
-            put(x, Math.round((height - 6) * (high - z) / Math.max(high - low, 1e-9)) + 2, color);
+        put(app.pixel[0], y, y + 1, [150, 150, 150]);
+    const place = (z) => Math.round((height - 6) * (high - z) / Math.max(high - low, 1e-9)) + 2;
+    rows.forEach(({ color }, row) => distances[row].forEach((z, x, all) => {
+        if (!(z <= high && z >= low))
+            return;
+        const y = place(z), last = x > 0 ? place(all[x - 1]) : NaN; /* a steep surface is a line */
+        const from = Math.abs(last - y) < height / 16 ? last + Math.sign(y - last) : y;
+        put(x, Math.min(from, y), Math.max(from, y) + 1, color);
     }));
     const legend = rows.filter(({ text }) => text).map((row) => ({ ...row, pattern: "plain" }));
     return [{ title: `The pixel's row, from above; the eye is below`, picture: {
