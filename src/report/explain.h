@@ -1,0 +1,35 @@
+/* The page of `peel explain -o`: one file with the pipeline as WebAssembly, the scene, and what gl
+ * and the truth say of the same frame. */
+#ifndef PEEL_REPORT_EXPLAIN_H
+#define PEEL_REPORT_EXPLAIN_H
+
+#include "compare/store.h"
+#include "frame/frame.h"
+
+/* One renderer's frame. */
+typedef struct ExplainSide {
+    const Frame *frame;      /* NULL: it has none */
+    const TraceStore *trace; /* NULL of the truth */
+    const char *missing;     /* without a frame: why, in one line */
+} ExplainSide;
+
+typedef struct ExplainDesc {
+    const char *name, *command; /* of the scene; what makes the page again */
+    const Scene *scene;
+    RenderDesc desc;
+    ExplainSide ref, gl, truth;
+    size_t max_bytes; /* of the page; 0: EXPLAIN_MAX_BYTES */
+} ExplainDesc;
+
+#define EXPLAIN_MAX_BYTES       ((size_t)15000000)
+#define EXPLAIN_MAX_TRACE_BYTES ((size_t)1000000000)
+
+/* Whether a page can keep a frame with this trace of ref: twice, in the pipeline's memory and in
+ * its own. UNSUPPORTED and a message where it cannot. name: of the scene. */
+Result report_explain_check(const char *name, const TraceStore *ref);
+
+/* Writes dir/index.html; dir exists. ref has a frame and its trace. UNSUPPORTED where the page
+ * would be larger than it may be: the message says what takes the room. Else NO_MEMORY and IO. */
+Result report_explain_write(const ExplainDesc *explain, const char *dir);
+
+#endif
