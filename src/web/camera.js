@@ -103,6 +103,3 @@ camera.parse = (text, size) => {
              lengths: columns.map((c) => Math.sqrt(camera.dot(c, c))), size, yfov, near, far,
              distance };
 };
-
-if (typeof module !== "undefined")
-    module.exports = { camera };
