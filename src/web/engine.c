@@ -316,7 +316,7 @@ static void forget(void)
 EXPORT(engine_render) int engine_render(int width, int height, bool trace)
 {
     forget();
-    engine.sink.put = keep;
+    engine.sink = (TraceSink){.put = keep, .details = true};
     engine.desc.width = width;
     engine.desc.height = height;
     Result result =
