@@ -65,6 +65,16 @@ controls.slider = (desc) => {
                         slider, number);
 };
 
+/* A number without one, such as a distance. */
+controls.number = (desc) => {
+    const row = controls.slider(desc), [slider, number] = row.querySelectorAll("input");
+    number.id = slider.id;
+    number.removeAttribute("aria-label");
+    slider.remove();
+    number.classList.add("wide");
+    return row;
+};
+
 /* A colour, as linear numbers: get() -> [r, g, b], set([r, g, b]). */
 controls.color = (desc) => {
     const { id, get, own, set, what } = desc;

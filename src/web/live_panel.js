@@ -91,19 +91,20 @@ live.showFigures = () => {
         return;
     const rate = live.times.slice(-20);
     const ms = rate.reduce((sum, one) => sum + one, 0) / Math.max(1, rate.length);
-    const entry = (label, value, format, name) => [app.element("dt", { textContent: label }),
-        app.element("dd", {}, app.numberElement(value, format, `live.${name}`))];
+    const entry = (label, value, format, name) => app.element("div", {},
+        app.element("dt", { textContent: label }),
+        app.element("dd", {}, app.numberElement(value, format, `live.${name}`)));
     live.state.textContent = `${frame.width} × ${frame.height} pixels in ${Math.round(frame.ms)} ms` +
         (live.refining ? "; a larger one is being drawn." : ".") +
         ` While things change: ${(1000 / ms).toFixed(1)} pictures a second.`;
     live.figures.replaceChildren(
-        ...entry("Peels", frame.peels, "count", "peels"),
-        ...entry("Geometry passes", frame.geometry_passes, "count", "geometry_passes"),
-        ...entry("Most layers in a pixel", frame.max_layers, "count", "max_layers"),
-        ...entry("Transparent fragments", frame.fragments, "count", "fragments"),
-        ...entry("Lost to ties", frame.lost_to_ties, "count", "lost_to_ties"),
-        ...entry("Lost to the pass limit", frame.lost_to_pass_limit, "count", "lost_to_pass_limit"),
-        ...entry("Most light they would get", frame.residual_max, "r32f", "residual_max"));
+        entry("Peels", frame.peels, "count", "peels"),
+        entry("Geometry passes", frame.geometry_passes, "count", "geometry_passes"),
+        entry("Most layers in a pixel", frame.max_layers, "count", "max_layers"),
+        entry("Transparent fragments", frame.fragments, "count", "fragments"),
+        entry("Lost to ties", frame.lost_to_ties, "count", "lost_to_ties"),
+        entry("Lost to the pass limit", frame.lost_to_pass_limit, "count", "lost_to_pass_limit"),
+        entry("Most light they would get", frame.residual_max, "r32f", "residual_max"));
 };
 
 /* ---- the frame ---- */
@@ -167,7 +168,7 @@ live.buildCamera = (section) => {
             return button;
         }), live.button("Reset the camera", () => steer.use(null)));
     modes.setAttribute("aria-label", "What dragging does");
-    const plane = (name, label, min, max) => controls.slider({
+    const plane = (name, label, min, max) => controls.number({
         id: `camera-${name}`, label, what: `camera.${name}`, min: 1e-6, max: 1e9, step: "any",
         get: () => steer.now()[name], own: () => own()[name] ?? Infinity,
         set: (value) => {
