@@ -33,7 +33,8 @@ camera.round = (value) => Number(value.toPrecision(7));
 
 /* The camera's matrix, column-major. */
 camera.world = ({ eye, axes, lengths }) => {
-    const column = (axis, i) => [...axis.map((v) => camera.round(v * lengths[i])), 0];
+    const column = (axis, i) => [...axis.map((v) =>
+        Math.abs(v) < 1e-8 ? 0 : camera.round(v * lengths[i])), 0];
     return [...axes.flatMap(column), ...eye.map(camera.round), 1];
 };
 

@@ -106,9 +106,10 @@ edits.replay = async (engine) => {
 /* ---- the address ---- */
 
 edits.write = () => {
-    const parts = [...edits.materials].map(([name, value]) => `${name}:${value}`);
+    const float = (value) => app.shortest(Math.fround(value));
+    const parts = [...edits.materials].map(([name, value]) => `${name}:${float(value)}`);
     if (edits.ambient)
-        parts.push(`ambient:${edits.ambient.join(",")}`);
+        parts.push(`ambient:${edits.ambient.map(float).join(",")}`);
     for (const [index, one] of edits.cameras)
         parts.push(`camera${index}:${camera.write(one)}`);
     return parts.join(";");
