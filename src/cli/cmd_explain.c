@@ -1,4 +1,5 @@
 /* peel explain: the algorithm step by step, as a page. */
+#include "base/progress.h"
 #include "cli/bind.h"
 #include "cli/options.h"
 #include "report/explain.h"
@@ -50,28 +51,72 @@ static const struct argp command_argp = {
 typedef struct Sides {
     Frame frames[RENDERER_COUNT];
     TraceStore *traces[RENDERER_COUNT];
+    char missing[RENDERER_COUNT][256]; /* why there is no frame; "" where there is one */
 } Sides;
 
-static Result render(const ExplainCommand *command, const Scene *scene, int renderer, Sides *sides)
+static Result render(const Scene *scene, const RenderDesc *desc, int renderer, Sides *sides)
 {
-    Result result = store_create(0, &sides->traces[renderer]);
+    TraceStore **trace = &sides->traces[renderer];
+    Result result = renderer == RENDERER_TRUTH ? RESULT_OK : store_create(0, trace);
     if (result != RESULT_OK)
         return result;
-    return bind_renderers[renderer](scene, &command->render.desc,
-                                    store_sink(sides->traces[renderer]), &sides->frames[renderer]);
+    if (*trace)
+        store_sink(*trace)->details = true;
+    progress_begin(threeway_renderer_name(renderer), 0);
+    result = bind_renderers[renderer](scene, desc, *trace ? store_sink(*trace) : NULL,
+                                      &sides->frames[renderer]);
+    progress_end();
+    return result;
+}
+
+/* The page can do without gl or the truth, and then says why. */
+static Result render_beside(const RenderOptions *options, const Scene *scene,
+                            const RenderDesc *desc, int renderer, Sides *sides)
+{
+    Result result = renderer == RENDERER_GL ? options_check_fma(options) : RESULT_OK;
+    if (result == RESULT_OK)
+        result = render(scene, desc, renderer, sides);
+    if (result != RESULT_NO_GL && result != RESULT_UNSUPPORTED)
+        return result;
+    snprintf(sides->missing[renderer], sizeof sides->missing[renderer], "%s", result_message());
+    return RESULT_OK;
+}
+
+/* gl first: where nobody says so, ref fuses as the driver does. */
+static Result render_all(const RenderOptions *options, const Scene *scene, RenderDesc *desc,
+                         Sides *sides)
+{
+    Result result = render_beside(options, scene, desc, RENDERER_GL, sides);
+    if (result == RESULT_OK && !sides->missing[RENDERER_GL][0])
+        desc->unfused = !sides->frames[RENDERER_GL].fused;
+    if (result == RESULT_OK)
+        result = render(scene, desc, RENDERER_REF, sides);
+    if (result == RESULT_OK)
+        result = render_beside(options, scene, desc, RENDERER_TRUTH, sides);
+    return result;
+}
+
+static ExplainSide side_of(const Sides *sides, int renderer)
+{
+    bool missing = sides->missing[renderer][0];
+    return (ExplainSide){.frame = missing ? NULL : &sides->frames[renderer],
+                         .trace = sides->traces[renderer],
+                         .missing = sides->missing[renderer]};
 }
 
 static Result write(const ExplainCommand *command, const Scene *scene, const char *line)
 {
     Sides sides = {0};
-    Result result = render(command, scene, RENDERER_REF, &sides);
+    RenderDesc desc = command->render.desc;
+    Result result = render_all(&command->render, scene, &desc, &sides);
     if (result == RESULT_OK) {
-        ExplainDesc explain = {
-            .name = scene->name,
-            .command = line,
-            .scene = scene,
-            .desc = command->render.desc,
-            .ref = {.frame = &sides.frames[RENDERER_REF], .trace = sides.traces[RENDERER_REF]}};
+        ExplainDesc explain = {.name = scene->name ? scene->name : command->render.scene_path,
+                               .command = line,
+                               .scene = scene,
+                               .desc = desc,
+                               .ref = side_of(&sides, RENDERER_REF),
+                               .gl = side_of(&sides, RENDERER_GL),
+                               .truth = side_of(&sides, RENDERER_TRUTH)};
         result = report_explain_write(&explain, command->output);
     }
     for (int i = 0; i < RENDERER_COUNT; i++) {

@@ -29,6 +29,7 @@ app.start = async () => {
     try {
         await app.open();
         await app.check();
+        await sides.open();
         app.showHead();
         await app.follow();
         document.body.dataset.state = "ready";
@@ -202,6 +203,19 @@ app.renderStale = async () => {
     app.tell("scene", "frame", "step", "pixel");
 };
 
+/* Another frame of the scene as it is now, without its trace: resolves to its buffers by name. The
+ * calls are posted together, so nothing comes between them. */
+app.renderWith = async (settings) => {
+    const calls = Object.entries(settings).map(([name, value]) => app.engine.set(name, value));
+    const frame = app.engine.render(...app.settings.size, false);
+    for (const name of Object.keys(settings)) {
+        const one = app.settings[name];
+        calls.push(app.engine.set(name, one.choices ? one.value : one));
+    }
+    await Promise.all(calls);
+    return Object.fromEntries((await frame).buffers.map((buffer) => [buffer.name, buffer]));
+};
+
 app.useFrame = (frame) => {
     const buffers = new Map(frame.buffers.map((buffer) => [buffer.name, buffer]));
     const id = app.steps[app.step]?.id;
@@ -218,11 +232,11 @@ app.copySettings = () => Object.fromEntries(
     Object.entries(app.settings).map(([name, one]) => [name, one.choices ? one.value : one]));
 
 /* Whether gl's and the truth's values, which are of the frame that the program rendered, can stand
- * beside this frame. */
-app.asCarried = () => {
+ * beside this frame. apart: settings that do not matter. */
+app.asCarried = (apart = []) => {
     const now = app.copySettings();
-    return Object.entries(app.carried).every(([name, value]) => String(now[name]) ===
-                                                                String(value)) &&
+    return Object.entries(app.carried).every(([name, value]) => apart.includes(name) ||
+               String(now[name]) === String(value)) &&
            app.links.every((link) => !link.edits || !link.get());
 };
 
@@ -239,8 +253,7 @@ app.link = () => {
     const now = app.copySettings();
     if (app.steps.length > 0)
         parts.push(["step", app.steps[app.step].id]);
-    if (app.pixel)
-        parts.push(["pixel", app.pixel.join(",")]);
+    parts.push(["pixel", app.pixel ? app.pixel.join(",") : "none"]);
     if (app.view !== "steps")
         parts.push(["view", app.view]);
     for (const [name, value] of Object.entries(now)) {
@@ -268,7 +281,7 @@ app.writeLink = () => {
 /* Goes where the address says. What it does not name is as carried. */
 app.follow = async () => {
     const parts = new URLSearchParams(location.hash.slice(1));
-    const wanted = { view: "steps", step: 0, pixel: null };
+    const wanted = { view: "steps", step: 0, pixel: app.deepestPixel() };
     const now = app.copySettings();
     for (const [name, value] of Object.entries(app.carried))
         if (String(now[name]) !== String(value) && !parts.has(name))
@@ -280,11 +293,31 @@ app.follow = async () => {
     await app.change(wanted);
 };
 
+/* Where most layers are, of those the nearest to the middle: worth looking at first. */
+app.deepestPixel = () => {
+    const { width, height, buffers } = app.frame;
+    const layers = new Uint16Array(width * height);
+    for (const { name, data } of buffers)
+        if (/^peel\.\d+\.primitive$/.test(name))
+            data.forEach((id, i) => layers[i] += id !== 0xffffffff);
+    let best = null, least = Infinity;
+    const most = layers.reduce((a, b) => Math.max(a, b), 0);
+    layers.forEach((count, i) => {
+        const [x, y] = [i % width, Math.floor(i / width)];
+        const away = (x - width / 2) ** 2 + (y - height / 2) ** 2;
+        if (count === most && away < least)
+            [best, least] = [[x, y], away];
+    });
+    return best;
+};
+
 app.followPart = (name, text, wanted) => {
     const numbers = text.split(/[,x]/).map(Number);
     const two = numbers.length === 2 && numbers.every((n) => Number.isInteger(n) && n >= 0);
     if (name === "pixel" && two)
         wanted.pixel = numbers;
+    else if (name === "pixel" && text === "none")
+        wanted.pixel = null;
     else if (name === "size" && two && Math.min(...numbers) >= 1 && Math.max(...numbers) <= 2048)
         wanted.size = numbers;
     else if (name === "step")

@@ -54,20 +54,24 @@ draw.picture = (buffer, legend, color, describe) => {
     return { width, height, rgba, legend, describe };
 };
 
-/* All channels of a pixel, with their names. */
-draw.describe = (buffer, names) => (x, y) => {
+/* The first channels of a pixel, with these labels. */
+draw.describe = (buffer, labels) => (x, y) => {
     const at = (y * buffer.width + x) * buffer.channels;
-    return [...names].map((name, i) => [name, buffer.data[at + i], buffer.format,
-                                        `${buffer.name}.${name}`]);
+    return [...labels].map((label, i) => [label, buffer.data[at + i], buffer.format,
+                                          draw.what(buffer, i)]);
 };
+
+/* "peel.2.accum.r"; of a buffer with one channel "peel.2.depth". */
+draw.what = (buffer, channel) => buffer.channels === 1 ? buffer.name
+                                                       : `${buffer.name}.${"rgba"[channel]}`;
 
 /* What a texel fetch would give of a channel. */
 draw.value = (buffer, at) => app.stored(buffer.data[at], buffer.format);
 
+/* Whether the pass that made the buffer drew nothing at pixel i. */
 draw.isEmpty = (buffer, i) => {
-    const [kind, peel] = [buffer.name.split("."), buffer.name.lastIndexOf(".")];
-    const ids = app.frame.buffer(`${buffer.name.slice(0, peel)}.primitive`);
-    return kind.length > 1 && ids ? ids.data[i] === 0xffffffff : false;
+    buffer.ids ??= app.frame.buffer(buffer.name.replace(/[^.]*$/, "primitive")) ?? { data: [] };
+    return buffer.ids.data[i] === 0xffffffff;
 };
 
 /* Distance from the eye along the view axis, of a window depth. */
@@ -102,7 +106,7 @@ draw.depth = (buffer) => {
     const color = (at, i) => draw.isEmpty(buffer, i) ? null
         : draw.ramp((draw.distance(draw.value(buffer, at)) - low) / span);
     return draw.picture(buffer, `Light is near (${low.toPrecision(3)}), dark is far ` +
-        `(${high.toPrecision(3)}); hatched: nothing was drawn.`, color, draw.describe(buffer, "d"));
+        `(${high.toPrecision(3)}); hatched: nothing was drawn.`, color, draw.describe(buffer, ["depth"]));
 };
 
 /* Undoes the octahedral form (frame/shading.h). */
@@ -148,8 +152,7 @@ draw.material = (buffer) => draw.picture(buffer,
     "Roughness as red, metallic as green, occlusion as blue.",
     (at, i) => draw.isEmpty(buffer, i) ? null : [0, 1, 2].map((k) =>
         255 * draw.value(buffer, at + k)),
-    (x, y) => draw.describe(buffer, "rgb")(x, y).map(([, ...rest], i) =>
-        [["roughness", "metallic", "occlusion"][i], ...rest]));
+    draw.describe(buffer, ["roughness", "metallic", "occlusion"]));
 
 draw.ids = (buffer) => draw.picture(buffer, "Each triangle has a colour of its own.",
     (at) => buffer.data[at] === 0xffffffff ? null : draw.category(buffer.data[at]),
@@ -159,6 +162,22 @@ draw.light = (buffer, legend = "Light gathered so far, as the display would show
     draw.picture(buffer, legend,
         (at) => [0, 1, 2].map((k) => draw.display(draw.value(buffer, at + k))),
         draw.describe(buffer, "rgba"));
+
+/* The same where nothing was blended left out. */
+draw.source = (buffer) => draw.picture(buffer, "As the display would show it on black.",
+    (at) => buffer.data[at + 3] === 0 ? null
+        : [0, 1, 2].map((k) => draw.display(draw.value(buffer, at + k))),
+    draw.describe(buffer, "rgba"));
+
+/* A premultiplied colour without its alpha: to be looked at only. */
+draw.unmultiplied = (buffer) => draw.picture(buffer, "The colour before it was multiplied.",
+    (at) => buffer.data[at + 3] === 0 ? null
+        : [0, 1, 2].map((k) => draw.display(draw.value(buffer, at + k) / draw.value(buffer, at + 3))),
+    () => []);
+
+draw.linear = (buffer) => draw.picture(buffer, "Without tone mapping.",
+    (at) => [0, 1, 2].map((k) => draw.gamma(draw.value(buffer, at + k))),
+    draw.describe(buffer, "rgba"));
 
 /* One channel in grey. */
 draw.grey = (buffer, channel, legend) => draw.picture(buffer, legend,
@@ -178,4 +197,85 @@ draw.buffer = (buffer) => {
                     diffuse: draw.base, material: draw.material, primitive: draw.ids, id: draw.ids,
                     accum: draw.light, final: draw.light, color: draw.light, display: draw.bytes };
     return (kinds[buffer.name.split(".").pop()] ?? draw.any)(buffer);
+};
+
+/* ---- pictures made of two or more buffers ---- */
+
+draw.TESTS = [
+    { what: "peeled", color: [222, 143, 5], pattern: "slant", text: "the previous depth" },
+    { what: "hidden", color: [1, 115, 178], pattern: "plain", text: "the opaque depth" },
+    { what: "farther", color: [2, 158, 115], pattern: "level",
+      text: "the depth test: another is nearer" },
+];
+
+/* Which tests threw fragments away in a peel: a colour and a pattern each; where several did, they
+ * stand in columns. */
+draw.rejected = (peel) => {
+    const tests = draw.TESTS.map((test) => ({
+        ...test, buffer: app.frame.buffer(`peel.${peel}.${test.what}`), count: 0 }));
+    for (const test of tests)
+        test.count = test.buffer.data.reduce((sum, n) => sum + n, 0);
+    const { width } = tests[0].buffer;
+    const color = (at) => {
+        const [x, y] = [at % width, Math.floor(at / width)];
+        const some = tests.filter((test) => test.buffer.data[at] > 0);
+        return some.length === 0 ? null : draw.pattern(some[(x >> 2) % some.length], x, y);
+    };
+    const legend = tests.map((test) => ({ ...test, text: [`${test.text}: `,
+        app.numberElement(test.count, "count", `peel.${peel}.${test.what}.count`)] }));
+    return draw.picture(tests[0].buffer, legend, color, (x, y) => tests.map((test) =>
+        [test.text.split(":")[0], test.buffer.data[y * width + x], "count",
+         `peel.${peel}.${test.what}`]));
+};
+
+draw.pattern = ({ color, pattern }, x, y) => {
+    const line = pattern === "slant" ? (x + y) % 4 === 0 : pattern === "level" && y % 3 === 0;
+    return line ? draw.mix(color, [255, 255, 255], 0.45) : color;
+};
+
+/* Where two buffers of one format have other bits. */
+draw.differing = (a, b, channels = a.channels) => {
+    let count = 0;
+    const color = (at) => {
+        for (let k = 0; k < channels; k++)
+            if (a.data[at + k] !== b.data[at + k]) {
+                count++;
+                return [205, 60, 80];
+            }
+        return [128, 132, 140];
+    };
+    const picture = draw.picture(a, "", color, (x, y) => {
+        const at = (y * a.width + x) * a.channels;
+        return [...Array(channels).keys()].map((k) =>
+            [`${"rgba"[k]} difference`, a.data[at + k] - b.data[at + k], "count",
+             `difference.${"rgba"[k]}`]);
+    });
+    picture.count = count;
+    picture.legend = `Red: pixels that differ, ${count} of ${a.width * a.height}.`;
+    return picture;
+};
+
+/* The greatest difference of a pixel's channels, on a logarithmic scale from 1e-8 to 1. */
+draw.error = (a, data, what) => {
+    const most = (at) => Math.max(...[0, 1, 2, 3].map((k) => Math.abs(a.data[at + k] - data[at + k])));
+    let greatest = 0, squares = 0;
+    const picture = draw.picture(a, "", (at) => {
+        const error = most(at);
+        greatest = Math.max(greatest, error);
+        squares += [0, 1, 2, 3].reduce((sum, k) => sum + (a.data[at + k] - data[at + k]) ** 2, 0);
+        return error === 0 ? [0, 0, 0] : draw.ramp(1 - (Math.log10(error) + 8) / 8);
+    }, (x, y) => [["difference", most(4 * (y * a.width + x)), "double", `${what}.at`]]);
+    picture.greatest = greatest;
+    picture.rmse = Math.sqrt(squares / (4 * a.width * a.height));
+    picture.legend = "Greatest difference of a pixel's channels, from dark (1e-8) to light (1); " +
+                     "black: equal.";
+    return picture;
+};
+
+/* Counts per pixel. */
+draw.counts = (buffer, data, what, label) => {
+    const most = data.reduce((a, b) => Math.max(a, b), 0);
+    return draw.picture({ ...buffer, channels: 1 }, `None (hatched) to ${most} (dark).`,
+        (at) => data[at] === 0 ? null : draw.ramp(data[at] / Math.max(most, 1)),
+        (x, y) => [[label, data[y * buffer.width + x], "count", what]]);
 };

@@ -14,6 +14,10 @@ app.shortest = (value) => {
     return String(value);
 };
 
+/* Four digits, for what is no stored number. */
+app.rounded = (value) => Number.isFinite(value) ? String(Number(value.toPrecision(4)))
+                                                : app.shortest(value);
+
 /* As C's "%a" prints a number that a float or a double holds. */
 app.hexFloat = (value) => {
     if (value === 0 || !Number.isFinite(value))
@@ -51,6 +55,8 @@ app.number = (stored, format = "r32f") => {
         const text = format === "r32ui" && stored === 0xffffffff ? "none" : String(stored);
         return { value: stored, decimal: text, hex: String(stored) };
     }
+    if (format === "double")
+        return { value: stored, decimal: app.rounded(stored), hex: app.hexFloat(stored) };
     const value = app.stored(stored, format);
     const number = { value, decimal: app.shortest(value), hex: app.hexFloat(value) };
     if (UNORM_MAX[format])
