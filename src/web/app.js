@@ -111,7 +111,7 @@ app.say = (text) => {
 
 /* ---- listeners ---- */
 
-/* what: "frame", "step", "pixel", "view", "scene" or "settings". */
+/* what: "frame", "step", "pixel", "view", "scene", "settings" or "edit": of the scene. */
 app.on = (what, listener) => {
     (app.listeners[what] ??= []).push(listener);
 };

@@ -55,7 +55,8 @@ camera.look = (one, yaw, pitch) => {
     const turned = one.axes.map((axis) => camera.turn(axis, [0, 1, 0], yaw));
     const wanted = Math.max(Math.min(height, -most), Math.min(Math.max(height, most),
                                                               height + pitch));
-    const axes = turned.map((axis) => camera.turn(axis, turned[0], wanted - height));
+    const right = camera.cross(turned[1], turned[2]); /* of a mirroring camera, its left */
+    const axes = turned.map((axis) => camera.turn(axis, right, wanted - height));
     return { ...one, axes: camera.square(axes) };
 };
 

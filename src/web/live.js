@@ -11,7 +11,7 @@ const live = {
     frame: null, /* the latest picture's figures */
     refining: null, /* {engine} while a larger picture is drawn */
     idle: null, /* timer */
-    times: [], /* of the last pictures, ms */
+    times: [], /* of the last pictures: {ms, scale} */
     turning: null, /* what turns the lights */
     listeners: [],
 };
@@ -55,18 +55,23 @@ live.show = (frame, ms, refined) => {
     live.canvas.getContext("2d").putImageData(new ImageData(rgba, frame.width, frame.height), 0, 0);
     live.frame = { ...frame, ms, refined, buffers: null };
     if (!refined) {
-        live.times.push(ms);
+        live.times.push({ ms, scale: live.scale });
         live.times.splice(0, live.times.length - 100);
-        live.scale = live.nextScale(live.scale, ms);
+        live.scale = live.nextScale(live.scale, live.times);
     }
     live.tell();
 };
 
-/* A quarter of the pixels where they take too long, and back where four times would do. */
-live.nextScale = (scale, ms) => {
-    if (ms > LIVE_MS && scale > 1 / 8)
+/* A quarter of the pixels where they take too long, and back where four times as many would do: by
+ * the middle one of the last three pictures, as any may have been held up. */
+live.nextScale = (scale, times) => {
+    const last = times.slice(-3).filter((one) => one.scale === scale).map((one) => one.ms);
+    const [, middle] = last.sort((a, b) => a - b);
+    if (last.length < 3)
+        return scale;
+    if (middle > LIVE_MS && scale > 1 / 8)
         return scale / 2;
-    return ms < LIVE_MS / 6 && scale < 1 ? scale * 2 : scale;
+    return middle < LIVE_MS / 5 && scale < 1 ? scale * 2 : scale;
 };
 
 live.tell = () => {
@@ -141,6 +146,7 @@ live.edit = async (done) => {
     }
     app.stale = true;
     app.writeLink();
+    app.tell("edit");
     if (app.view === "live")
         live.request();
     else

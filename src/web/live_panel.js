@@ -89,14 +89,14 @@ live.showFigures = () => {
     const frame = live.frame;
     if (!frame)
         return;
-    const rate = live.times.slice(-20);
-    const ms = rate.reduce((sum, one) => sum + one, 0) / Math.max(1, rate.length);
+    const last = live.times.slice(-20).map((one) => one.ms).sort((a, b) => a - b);
+    const ms = last[Math.floor(last.length / 2)];
     const entry = (label, value, format, name) => app.element("div", {},
         app.element("dt", { textContent: label }),
         app.element("dd", {}, app.numberElement(value, format, `live.${name}`)));
     live.state.textContent = `${frame.width} × ${frame.height} pixels in ${Math.round(frame.ms)} ms` +
         (live.refining ? "; a larger one is being drawn." : ".") +
-        ` While things change: ${(1000 / ms).toFixed(1)} pictures a second.`;
+        ` Pictures a second while things change: ${Math.round(1000 / ms)}.`;
     live.figures.replaceChildren(
         entry("Peels", frame.peels, "count", "peels"),
         entry("Geometry passes", frame.geometry_passes, "count", "geometry_passes"),
@@ -104,7 +104,7 @@ live.showFigures = () => {
         entry("Transparent fragments", frame.fragments, "count", "fragments"),
         entry("Lost to ties", frame.lost_to_ties, "count", "lost_to_ties"),
         entry("Lost to the pass limit", frame.lost_to_pass_limit, "count", "lost_to_pass_limit"),
-        entry("Most light they would get", frame.residual_max, "r32f", "residual_max"));
+        entry("Residual transmittance", frame.residual_max, "r32f", "residual_max"));
 };
 
 /* ---- the frame ---- */

@@ -218,7 +218,7 @@ space.placeDots = ([x, y], eye) => {
                                             : "none";
         const text = app.element("span", { textContent: card.buffer && color[3] > 0
             ? `α ${Number(color[3].toPrecision(3))}` : "" });
-        if (taken.some(([a, b]) => Math.abs(a - at[0]) < 56 && Math.abs(b - at[1]) < 18))
+        if (taken.some(([a, b]) => Math.abs(a - at[0]) < 54 && Math.abs(b - at[1]) < 22))
             text.textContent = "";
         else if (text.textContent)
             taken.push(at);
