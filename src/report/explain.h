@@ -21,10 +21,15 @@ typedef struct ExplainDesc {
     size_t max_bytes; /* of the page; 0: EXPLAIN_MAX_BYTES */
 } ExplainDesc;
 
-#define EXPLAIN_MAX_BYTES ((size_t)15000000)
+#define EXPLAIN_MAX_BYTES       ((size_t)15000000)
+#define EXPLAIN_MAX_TRACE_BYTES ((size_t)1000000000)
 
-/* Writes dir/index.html; dir exists. UNSUPPORTED where the page would be larger than it may be: the
- * message says what takes the room. Else NO_MEMORY and IO. */
+/* Whether a page can keep a frame with this trace of ref: twice, in the pipeline's memory and in
+ * its own. UNSUPPORTED and a message where it cannot. name: of the scene. */
+Result report_explain_check(const char *name, const TraceStore *ref);
+
+/* Writes dir/index.html; dir exists. ref has a frame and its trace. UNSUPPORTED where the page
+ * would be larger than it may be: the message says what takes the room. Else NO_MEMORY and IO. */
 Result report_explain_write(const ExplainDesc *explain, const char *dir);
 
 #endif
