@@ -9,16 +9,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-extern const char report_style_css[], page_css[], page_html[], page_engine_js[], page_draw_js[],
-    page_app_js[], page_number_js[], page_figure_js[], page_sides_js[], page_walk_js[],
-    page_walk_end_js[], page_walk_others_js[], page_methods_js[], page_steps_js[], page_pixel_js[],
-    page_live_js[], page_space_js[], page_lessons_js[], page_course_js[];
+extern const char report_style_css[], page_css[], page_live_css[], page_html[], page_engine_js[],
+    page_draw_js[], page_app_js[], page_number_js[], page_figure_js[], page_sides_js[],
+    page_walk_js[], page_walk_end_js[], page_walk_others_js[], page_methods_js[], page_steps_js[],
+    page_pixel_js[], page_camera_js[], page_edits_js[], page_live_js[], page_controls_js[],
+    page_steer_js[], page_live_panel_js[], page_space_js[], page_lessons_js[], page_course_js[];
 
+static const char *const styles[] = {report_style_css, page_css, page_live_css};
 static const char *const scripts[] = {
-    page_engine_js,      page_draw_js,    page_app_js,     page_number_js,
-    page_figure_js,      page_sides_js,   page_walk_js,    page_walk_end_js,
-    page_walk_others_js, page_methods_js, page_steps_js,   page_pixel_js,
-    page_live_js,        page_space_js,   page_lessons_js, page_course_js};
+    page_engine_js,   page_draw_js,  page_app_js,        page_number_js,      page_figure_js,
+    page_sides_js,    page_walk_js,  page_walk_end_js,   page_walk_others_js, page_methods_js,
+    page_steps_js,    page_pixel_js, page_camera_js,     page_edits_js,       page_live_js,
+    page_controls_js, page_steer_js, page_live_panel_js, page_space_js,       page_lessons_js,
+    page_course_js};
 
 static void put(FileWriter *page, const char *text)
 {
@@ -31,8 +34,8 @@ static void put_page(FileWriter *page, const ExplainDesc *explain, const Text *d
               "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>");
     html_text(page, explain->name);
     put(page, " - explained</title>\n<style>\n");
-    put(page, report_style_css);
-    put(page, page_css);
+    for (size_t i = 0; i < sizeof styles / sizeof styles[0]; i++)
+        put(page, styles[i]);
     put(page, "</style>\n</head>\n<body>\n");
     put(page, page_html);
     put(page, "<script type=\"application/json\" id=\"data\">");
@@ -48,7 +51,9 @@ static void put_page(FileWriter *page, const ExplainDesc *explain, const Text *d
 
 static size_t page_size(const Text *data)
 {
-    size_t size = data->count + strlen(report_style_css) + strlen(page_css) + strlen(page_html);
+    size_t size = data->count + strlen(page_html);
+    for (size_t i = 0; i < sizeof styles / sizeof styles[0]; i++)
+        size += strlen(styles[i]);
     for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; i++)
         size += strlen(scripts[i]);
     return size;
