@@ -13,8 +13,8 @@
 struct Retrace {
     const Scene *scene;
     RenderDesc desc;
-    Pass pass; /* of the whole frame */
-    Pool *pool; /* of one thread, for parts */
+    Pass pass;         /* of the whole frame */
+    Pool *pool;        /* of one thread, for parts */
     Geometry unculled; /* empty where nothing is culled */
     AllTriangles all;
 };
@@ -161,8 +161,9 @@ static Result put_shading(const Pass *pass, History *history, HistorySurface *su
         return RESULT_OK;
     float ambient[3];
     ShadeTerm *terms = memory_array(count, sizeof *terms);
-    HistoryTerm *out = terms ? history_add_terms(history, count) : NULL;
-    if (out) {
+    HistoryTerm *out = terms && count > 0 ? history_add_terms(history, count) : NULL;
+    bool room = terms && (out || count == 0);
+    if (room) {
         shade_terms(&pass->view, form, texel, terms, ambient);
         for (size_t i = 0; i < count; i++)
             copy_term(&terms[i], &out[i]);
@@ -171,7 +172,7 @@ static Result put_shading(const Pass *pass, History *history, HistorySurface *su
         copy(surface->ambient, ambient, 3);
     }
     free(terms);
-    return out ? RESULT_OK : RESULT_NO_MEMORY;
+    return room ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 static void on_shade(PassWatch *base, size_t pixel, uint32_t primitive, const ShadeForm *form,
@@ -208,8 +209,8 @@ static void name_step(const Watch *watch, uint32_t primitive, HistoryStep *out)
     const History *history = watch->history;
     MethodId method = watch->pass->desc->method;
     bool opaque = out->fragment != HISTORY_NONE && !history->fragments[out->fragment].transparent;
-    bool peels = method_info(method)->loses_ties || method == METHOD_PEEL_ID ||
-                 method == METHOD_LINKED_LIST;
+    bool peels =
+        method_info(method)->loses_ties || method == METHOD_PEEL_ID || method == METHOD_LINKED_LIST;
     if (opaque)
         snprintf(out->step, sizeof out->step, "opaque");
     else if (primitive == PRIMITIVE_NONE && strcmp(out->target, "accum") == 0)
@@ -287,8 +288,7 @@ static void put_results(const PixelTrace *trace, const Frame *frame, int x, int 
         memcpy(out->display, image_pixel(&frame->display, x, y), sizeof out->display);
     }
     for (size_t i = 0; i < out->step_count; i++)
-        if (strcmp(out->steps[i].target, "accum") == 0 &&
-            strcmp(out->steps[i].step, "opaque") != 0)
+        if (strcmp(out->steps[i].target, "accum") == 0 && strcmp(out->steps[i].step, "opaque") != 0)
             behind = out->steps[i].after[3];
     out->transmittance = behind;
 }
@@ -353,8 +353,7 @@ static Result find_fragments(const Retrace *retrace, int x, int y, History *out)
 {
     const Pass *pass = &retrace->pass;
     uint32_t saved = op_enter();
-    Result result =
-        retrace_find_fragments(pass, &retrace->all, x, pass->view.height - 1 - y, out);
+    Result result = retrace_find_fragments(pass, &retrace->all, x, pass->view.height - 1 - y, out);
     op_leave(saved);
     return result;
 }

@@ -12,8 +12,8 @@ typedef struct Decide {
     const PixelTrace *trace;
     History *history;
     bool overflowed;
-    uint32_t opaque, far; /* depth codes */
-    int number;           /* of the pass */
+    uint32_t opaque, far;           /* depth codes */
+    int number;                     /* of the pass */
     uint32_t previous, previous_id; /* of the layer in front, from the second pass on */
     size_t kept, kept_back;         /* by the pass so far: an index, or NOTHING */
 } Decide;
@@ -91,8 +91,7 @@ static Result put(Decide *decide, size_t fragment, HistoryTest test)
 /* A new fragment takes the place of *kept, which fails the depth test after all. */
 static Result keep(Decide *decide, size_t *kept, size_t fragment)
 {
-    Result result =
-        *kept == NOTHING ? RESULT_OK : put(decide, *kept, HISTORY_DEPTH_TEST);
+    Result result = *kept == NOTHING ? RESULT_OK : put(decide, *kept, HISTORY_DEPTH_TEST);
     *kept = fragment;
     return result == RESULT_OK ? put(decide, fragment, HISTORY_KEPT) : result;
 }
@@ -281,9 +280,9 @@ static HistoryFate fate_of(const Decide *decide, const HistoryFragment *fragment
         return HISTORY_MASKED;
     if (method == METHOD_LINKED_LIST)
         return decide->overflowed ? HISTORY_OVERFLOW : HISTORY_PASS_LIMIT;
-    if (at_a_layer(decide, fragment, dual))
-        return HISTORY_TIE;
-    return remains(decide, fragment, dual) ? HISTORY_PASS_LIMIT : HISTORY_SKIPPED;
+    if (remains(decide, fragment, dual))
+        return HISTORY_PASS_LIMIT;
+    return at_a_layer(decide, fragment, dual) ? HISTORY_TIE : HISTORY_SKIPPED;
 }
 
 static void decide_rest(Decide *decide)

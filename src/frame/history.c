@@ -17,12 +17,19 @@ void history_free(History *history)
 const char *history_fate_name(HistoryFate fate)
 {
     static const char *const names[HISTORY_FATES] = {
-        [HISTORY_PEELED] = "peeled",         [HISTORY_BLENDED] = "blended",
-        [HISTORY_SEEN] = "seen",             [HISTORY_HIDDEN] = "hidden",
-        [HISTORY_TIE] = "tie",               [HISTORY_SKIPPED] = "skipped",
-        [HISTORY_PASS_LIMIT] = "pass_limit", [HISTORY_OVERFLOW] = "overflow",
- [HISTORY_INVISIBLE] = "invisible", [HISTORY_MASKED] = "masked",         [HISTORY_FILL_RULE] = "fill_rule",
-        [HISTORY_CULLED] = "culled",         [HISTORY_CLIPPED] = "clipped",
+        [HISTORY_PEELED] = "peeled",
+        [HISTORY_BLENDED] = "blended",
+        [HISTORY_SEEN] = "seen",
+        [HISTORY_HIDDEN] = "hidden",
+        [HISTORY_TIE] = "tie",
+        [HISTORY_SKIPPED] = "skipped",
+        [HISTORY_PASS_LIMIT] = "pass_limit",
+        [HISTORY_OVERFLOW] = "overflow",
+        [HISTORY_INVISIBLE] = "invisible",
+        [HISTORY_MASKED] = "masked",
+        [HISTORY_FILL_RULE] = "fill_rule",
+        [HISTORY_CULLED] = "culled",
+        [HISTORY_CLIPPED] = "clipped",
     };
     return names[fate];
 }
@@ -54,9 +61,8 @@ static void *add(void *array_at, size_t *count, size_t *room, size_t more, size_
 
 HistoryFragment *history_add_fragment(History *history)
 {
-    HistoryFragment *fragment =
-        add(&history->fragments, &history->fragment_count, &history->fragment_room, 1,
-            sizeof *history->fragments);
+    HistoryFragment *fragment = add(&history->fragments, &history->fragment_count,
+                                    &history->fragment_room, 1, sizeof *history->fragments);
     if (fragment)
         fragment->peel = HISTORY_NONE;
     return fragment;
@@ -95,8 +101,7 @@ HistoryTest history_test(const History *history, size_t fragment, int pass)
 void history_values(PixelFormat format, const void *pixel, double out[4])
 {
     for (int i = 0; i < 4; i++)
-        out[i] =
-            i < format_info(format)->channels ? (double)format_channel(format, pixel, i) : 0.0;
+        out[i] = i < format_info(format)->channels ? (double)format_channel(format, pixel, i) : 0.0;
 }
 
 size_t history_count(const History *history, HistoryFate fate)
@@ -124,7 +129,8 @@ void history_summary(const History *history, Text *out)
         {HISTORY_CULLED, "culled"},
         {HISTORY_CLIPPED, "clipped"},
     };
-    size_t layers = history_count(history, HISTORY_PEELED) + history_count(history, HISTORY_BLENDED);
+    size_t layers =
+        history_count(history, HISTORY_PEELED) + history_count(history, HISTORY_BLENDED);
     text_print(out, "%zu layer%s", layers, layers == 1 ? "" : "s");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         size_t count = history_count(history, rows[i].fate);

@@ -50,11 +50,11 @@ typedef struct HistoryTerm {
 typedef struct HistorySurface {
     double position[3], normal[3]; /* view space */
     double base[4], roughness, metallic, occlusion;
-    bool lit;           /* what follows is there */
-    double ambient[3];  /* comes after the lights' sum */
-    double source[4];   /* premultiplied colour and alpha */
-    size_t first_term;  /* in History.terms */
-    size_t term_count;  /* 0 with Phong, and of truth */
+    bool lit;          /* what follows is there */
+    double ambient[3]; /* comes after the lights' sum */
+    double source[4];  /* premultiplied colour and alpha */
+    size_t first_term; /* in History.terms */
+    size_t term_count; /* 0 with Phong, and of truth */
 } HistorySurface;
 
 enum {
@@ -64,18 +64,18 @@ enum {
 typedef struct HistoryFragment {
     uint32_t primitive, instance, mesh, material;
     bool transparent, front;
-    bool has_edges;   /* edge functions at the pixel's centre, in 1/65536 pixel²: > 0 inside, 0 on */
-    int64_t edge[3];  /* the edge, where the fill rule gives it an edge through the centre */
-    bool owned[3];    /* the fill rule gives the edge to this triangle */
-    double z;         /* window depth as computed */
-    double depth;     /* as stored and fetched; z where nothing stores it */
-    uint32_t code;    /* as stored: an integer whose order is the depth's; of pipelines */
-    double distance;  /* along the view axis */
+    bool has_edges; /* edge functions at the pixel's centre, in 1/65536 pixel²: > 0 inside, 0 on */
+    int64_t edge[3]; /* the edge, where the fill rule gives it an edge through the centre */
+    bool owned[3];   /* the fill rule gives the edge to this triangle */
+    double z;        /* window depth as computed */
+    double depth;    /* as stored and fetched; z where nothing stores it */
+    uint32_t code;   /* as stored: an integer whose order is the depth's; of pipelines */
+    double distance; /* along the view axis */
     HistoryFate fate;
-    int peel;         /* HISTORY_NONE unless peeled */
-    bool back;        /* dual peeling took it from behind */
-    bool masked;      /* the alpha mask discards it */
-    int passes;       /* that it met: the opaque list's one, or each peel's; history_test */
+    int peel;    /* HISTORY_NONE unless peeled */
+    bool back;   /* dual peeling took it from behind */
+    bool masked; /* the alpha mask discards it */
+    int passes;  /* that it met: the opaque list's one, or each peel's; history_test */
     HistorySurface surface;
 } HistoryFragment;
 
@@ -90,10 +90,10 @@ typedef struct HistoryStep {
     const char *equation;    /* static: number/blend.h's name */
     const char *format;      /* static: of the target; "double" of truth */
     int channels;
-    int fragment;       /* index in History.fragments, or HISTORY_NONE */
-    double source[4];   /* premultiplied colour and alpha, as blended */
+    int fragment;     /* index in History.fragments, or HISTORY_NONE */
+    double source[4]; /* premultiplied colour and alpha, as blended */
     double before[4], after[4];
-    bool stored;        /* before and after were read back; else they are recomputed */
+    bool stored; /* before and after were read back; else they are recomputed */
 } HistoryStep;
 
 typedef struct History {
@@ -110,7 +110,7 @@ typedef struct History {
     size_t term_count, term_room;
     HistoryStep *steps; /* in the order of blending */
     size_t step_count, step_room;
-    double accum[4]; /* as stored at the end; all of it but the background */
+    double accum[4];      /* as stored at the end; all of it but the background */
     double transmittance; /* of the layers, in front of the opaque surface */
     double final[4];
     uint8_t display[4];

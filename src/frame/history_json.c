@@ -100,7 +100,8 @@ static void put_fragment(Text *out, const History *history, const Scene *scene, 
     put_name(out, "instance_name", scene->instances[fragment->instance].name);
     put_name(out, "material_name", scene->materials[fragment->material].name);
     text_print(out, "\"list\":\"%s\",\"facing\":\"%s\",",
-               fragment->transparent ? "transparent" : "opaque", fragment->front ? "front" : "back");
+               fragment->transparent ? "transparent" : "opaque",
+               fragment->front ? "front" : "back");
     if (fragment->has_edges)
         put_edges(out, fragment);
     put_number(out, "z", fragment->z);

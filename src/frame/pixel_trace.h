@@ -18,8 +18,8 @@ typedef struct PixelValue {
 } PixelValue;
 
 typedef struct PixelTrace {
-    TraceSink sink; /* first */
-    int x, y;       /* from the top left */
+    TraceSink sink;     /* first */
+    int x, y;           /* from the top left */
     PixelValue *values; /* in their order */
     size_t count, room;
 } PixelTrace;
