@@ -12,6 +12,7 @@ typedef struct Decide {
     const PixelTrace *trace;
     History *history;
     bool overflowed;
+    bool ended; /* the last pass had no layer */
     uint32_t opaque, far;           /* depth codes */
     int number;                     /* of the pass */
     uint32_t previous, previous_id; /* of the layer in front, from the second pass on */
@@ -139,8 +140,9 @@ static Result run_peels(Decide *decide)
         const PixelValue *depth = pixel_trace_numbered(trace, "peel", decide->number, "depth");
         const PixelValue *id = pixel_trace_numbered(trace, "peel", decide->number, "id");
         Result result = run_pass(decide, true, pixel_trace_bits(depth, decide->far));
-        if (result != RESULT_OK || !depth)
-            return result; /* the pass after the last layer finds nothing */
+        decide->ended = !depth; /* the pass after the last layer finds nothing */
+        if (result != RESULT_OK || decide->ended)
+            return result;
         if (decide->kept != NOTHING)
             peel(&decide->history->fragments[decide->kept], decide->number, false);
         decide->previous = pixel_trace_bits(depth, 0);
@@ -262,8 +264,8 @@ static bool remains(const Decide *decide, const HistoryFragment *fragment, bool 
         memcpy(limits, limits_of(decide, decide->number - 1)->bytes, sizeof limits);
         return minmax_side(limits, distance_of(decide, fragment)) != MINMAX_PEELED;
     }
-    if (pass->desc->method == METHOD_LINKED_LIST || decide->number == 0)
-        return true;
+    if (decide->ended)
+        return false;
     if (pass->desc->method == METHOD_PEEL_ID)
         return pass_comes_after(pass, fragment->code, fragment->primitive, decide->previous,
                                 decide->previous_id);

@@ -17,7 +17,8 @@ typedef enum HistoryFate {
     HISTORY_SEEN,       /* the opaque surface behind all layers */
     HISTORY_HIDDEN,     /* an opaque surface is in front of it, or where it is */
     HISTORY_TIE,        /* at the depth of a fragment that was kept */
-    HISTORY_SKIPPED,    /* nearer behind a layer than the bias, or than the raw test tells apart */
+    HISTORY_SKIPPED,    /* nearer behind a layer than the bias, or than the raw test tells apart; or
+                         * at the far plane */
     HISTORY_PASS_LIMIT, /* further passes would have come to it */
     HISTORY_OVERFLOW,   /* its list had no room */
     HISTORY_INVISIBLE,  /* its alpha is at most SHADING_ALPHA_TEST, so that it is not blended */
