@@ -139,6 +139,7 @@ static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
             stage->tile_counts[tile].shaded++;
             if (edges && is_edge(stage, x, y, &texel))
                 color[0] = color[1] = color[2] = 0.0f;
+            details_put_color(&stage->details, stage_pixel(pass, x, y), color);
             blend_pixel(stage, transparent, stage_pixel(pass, x, y), color);
         }
 }
@@ -156,6 +157,7 @@ static void light_opaque_tile(Stage *stage, uint32_t tile)
 Result stage_light(Stage *stage, const GBuffer *source, bool transparent)
 {
     stage->lit = source;
+    details_clear_source(&stage->details);
     return stage_run(stage, transparent ? light_transparent_tile : light_opaque_tile);
 }
 
@@ -219,6 +221,8 @@ Result stage_finish(Stage *stage)
     Result result = RESULT_OK;
     if (needs_has(&stage->pass->needs, NEED_OPAQUE))
         result = stage_light(stage, &stage->opaque, false);
+    if (result == RESULT_OK)
+        result = stage_put_source(stage, -1);
     return result == RESULT_OK ? stage_resolve(stage) : result;
 }
 
@@ -280,6 +284,12 @@ Result stage_put_gbuffer(const Stage *stage, int peel, const GBuffer *buffers)
         if (rows[i].image->format != FORMAT_NONE)
             result = stage_put(stage, peel, rows[i].what, rows[i].image);
     return result;
+}
+
+Result stage_put_source(const Stage *stage, int peel)
+{
+    const Image *source = &stage->details.source;
+    return source->pixels ? stage_put(stage, peel, "source", source) : RESULT_OK;
 }
 
 void stage_count_drawn(const GBuffer *layer, const Image *previous_depth, uint64_t *drawn,
@@ -344,6 +354,10 @@ static Result allocate(Stage *stage)
         result = image_create(desc->width, desc->height, desc->accum, &stage->accum);
     if (result != RESULT_OK)
         return result;
+    if (stage->trace && stage->trace->details)
+        result = details_create(desc, &stage->details);
+    if (result != RESULT_OK)
+        return result;
     mutate_clear(pass, &stage->opaque);
     stage_clear_accum(stage);
     stage->fragments = memory_array(pixels, sizeof *stage->fragments);
@@ -361,6 +375,8 @@ Result stage_create(Pass *pass, TraceSink *trace, Frame *frame, void *method, ui
     uint64_t pixels = (uint64_t)pass->view.width * (uint64_t)pass->view.height;
     uint64_t own = stage_gbuffer_bytes(pass, false) +
                    pixels * (format_pixel_bytes(pass->desc->accum) + 3 * sizeof(uint32_t));
+    if (trace && trace->details)
+        own += pixels * details_pixel_bytes();
     *out = (Stage){.pass = pass,
                    .trace = trace,
                    .frame = frame,
@@ -379,6 +395,7 @@ void stage_free(Stage *stage)
 {
     gbuffer_free(&stage->opaque);
     image_free(&stage->accum);
+    details_free(&stage->details);
     free(stage->fragments);
     free(stage->remaining);
     free(stage->winner);

@@ -9,6 +9,7 @@
 #ifndef PEEL_REF_STAGE_H
 #define PEEL_REF_STAGE_H
 
+#include "ref/pipeline/details.h"
 #include "ref/pipeline/fragment.h"
 #include "ref/pipeline/mutate.h"
 #include "ref/pipeline/pass.h"
@@ -32,6 +33,7 @@ struct Stage {
     const GBuffer *lit;      /* of the lighting pass that runs */
     bool forward;            /* diffuse holds lit colours (METHOD_FORWARD) */
     float alpha_test;        /* SHADING_ALPHA_TEST */
+    Details details;         /* without pixels where nobody asks for them */
 };
 
 /* bytes: of the method's own buffers, which count against the limit. frame's images are allocated.
@@ -63,6 +65,8 @@ Result stage_opaque_only(Pass *pass, Frame *frame);
 
 /* Traces one buffer under "opaque.<what>" (peel −1) or "peel.K.<what>", or a whole G-buffer. */
 Result stage_put(const Stage *stage, int peel, const char *what, const Image *image);
+/* After stage_light, for a trace with details: the colours that it blended. */
+Result stage_put_source(const Stage *stage, int peel);
 Result stage_put_gbuffer(const Stage *stage, int peel, const GBuffer *buffers);
 
 /* Counts a peel's pixels, and of those the ones at the previous peel's depth (NULL: none). */

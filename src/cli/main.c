@@ -25,6 +25,7 @@ static const Command commands[] = {
     {"diagnose", "which known mistake explains an image by another program", cmd_diagnose},
     {"diff", "two images or traces: idiff's figures and exit codes, and ULP", cmd_diff},
     {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
+    {"explain", "step by step: a page with the pipeline in it", cmd_explain},
     {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
     {"hard", "the hard cases, each against its own expectation", cmd_hard},
     {"methods", "list the methods of --method", cmd_methods},

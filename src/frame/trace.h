@@ -15,6 +15,11 @@
  * depths (FORMAT_RG32F); METHOD.K.back_accum; of forward-dual forward-dual.K.front and .back; of
  * dual dual.K.front_normal front_diffuse front_material back_normal back_diffuse back_material, and
  * peel.K.accum. Their peel.K.primitive count the front layers first, then the back ones.
+ * A sink with details also gets, of ref, what no renderer stores: opaque.source and peel.K.source
+ * (FORMAT_RGBA32F), the premultiplied colours that the lighting pass blended, 0 where there are
+ * none; of the methods peel, forward and peel-id peel.K.hidden, peel.K.peeled and peel.K.farther
+ * (FORMAT_R32UI), how many fragments the opaque depth, the previous layer and the depth test threw
+ * away. These are of methods that light layers from a G-buffer, and of forward.
  * Values are the stored values in their stored formats; rows from top to bottom. */
 #ifndef PEEL_FRAME_TRACE_H
 #define PEEL_FRAME_TRACE_H
@@ -22,6 +27,7 @@
 #include "base/result.h"
 #include "number/format.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Rectangles start at multiples of TRACE_TILE and end there or at the image's edge. */
@@ -44,6 +50,7 @@ struct TraceSink {
     /* Copies what it wants; pixels are the renderer's again on return. Called by one thread at a
      * time. A failure ends the rendering with that result. */
     Result (*put)(TraceSink *sink, const TraceBuffer *buffer);
+    bool details;
 };
 
 /* A whole buffer with tightly packed rows. A NULL sink takes everything and keeps nothing. */

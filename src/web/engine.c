@@ -246,6 +246,12 @@ EXPORT(engine_set) int engine_set(const char *name, double value)
         desc->bias = (float)value;
     else if (strcmp(name, "unfused") == 0 && whole(value, 0, 1))
         desc->unfused = value != 0.0;
+    else if (strcmp(name, "opaque-blend") == 0 && whole(value, 0, OPAQUE_BLEND_SEED))
+        desc->opaque_blend = (OpaqueBlend)value;
+    else if (strcmp(name, "draw-order") == 0 && whole(value, 0, DRAW_ORDER_SHUFFLE))
+        desc->draw_order = (DrawOrder)value;
+    else if (strcmp(name, "draw-seed") == 0 && value >= 0.0 && value < 0x1p53)
+        desc->draw_seed = (uint64_t)value;
     else if (!set_choice(desc, name, value))
         return result_fail(RESULT_BAD_INPUT, "%s %g: no such setting or value", name, value);
     return RESULT_OK;
@@ -286,7 +292,7 @@ static void forget(void)
 EXPORT(engine_render) int engine_render(int width, int height, bool trace)
 {
     forget();
-    engine.sink.put = keep;
+    engine.sink = (TraceSink){.put = keep, .details = true};
     engine.desc.width = width;
     engine.desc.height = height;
     Result result =

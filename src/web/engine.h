@@ -29,7 +29,8 @@ const char *engine_scene(void);
 const char *engine_settings(void);
 
 /* name: of engine_settings (an index into its choices), or passes (0: auto), lights (0: all, −1:
- * none), camera, time (seconds), bias, nodes-per-pixel, unfused (0 or 1). */
+ * none), camera, time (seconds), bias, nodes-per-pixel, unfused (0 or 1), and opaque-blend,
+ * draw-order and draw-seed as RenderDesc has them. */
 int engine_set(const char *name, double value);
 
 /* field: 0 … 3 base colour, linear, and alpha; 4 roughness, 5 metallic, 6 occlusion; in [0, 1]. An

@@ -302,7 +302,7 @@ static Result refuse(TraceSink *sink, const TraceBuffer *buffer)
 START_TEST(test_trace_failure_ends_rendering)
 {
     Stage *stage = stage_new();
-    TraceSink sink = {refuse};
+    TraceSink sink = {.put = refuse};
     Frame frame;
     const RenderDesc desc = {.width = 300, .height = 300, .threads = 2};
     ck_assert_int_eq(truth_render(&stage->scene, &desc, &sink, &frame), RESULT_IO);

@@ -238,6 +238,8 @@ static Result blend_layer(Stage *stage)
     if (result == RESULT_OK)
         result = stage_light(stage, &lists->layer, true);
     if (result == RESULT_OK)
+        result = stage_put_source(stage, lists->peel);
+    if (result == RESULT_OK)
         result = stage_put(stage, lists->peel, "accum", &stage->accum);
     return result;
 }

@@ -143,15 +143,28 @@ static void keep_middle(const Peel *peel)
             memset((char *)diffuse->pixels + i * bytes, 0, bytes);
 }
 
+static bool is_peeled(const Stage *stage, const Primitive *primitive, FragmentDepth depth,
+                      size_t pixel)
+{
+    const Peel *peel = stage->method;
+    (void)primitive;
+    return peel->peel > 0 &&
+           pass_peeled(stage->pass, depth, stage_key(&peel->previous_depth, pixel));
+}
+
 /* Lighting pass of a peel. */
 static Result light_peel(Stage *stage)
 {
     const Peel *peel = stage->method;
     Result result = stage_put_gbuffer(stage, peel->peel, &peel->layer);
+    if (result == RESULT_OK)
+        result = details_put_rejected(stage, peel->peel, &peel->layer.primitive, is_peeled);
     if (mutate_has(stage->pass, MUTATION_ACCUMULATION_CLEARED))
         stage_clear_accum(stage);
     if (result == RESULT_OK)
         result = stage_light(stage, &peel->layer, true);
+    if (result == RESULT_OK)
+        result = stage_put_source(stage, peel->peel);
     if (result == RESULT_OK && peel->layers) {
         keep_middle(peel);
         result = stage_light(stage, &peel->layer, true);

@@ -115,6 +115,15 @@ static Result draw_peel(Stage *stage, uint64_t *drawn)
     return result;
 }
 
+static bool is_peeled(const Stage *stage, const Primitive *primitive, FragmentDepth depth,
+                      size_t pixel)
+{
+    const PeelId *state = stage->method;
+    return state->peel > 0 &&
+           !pass_comes_after(stage->pass, depth.key, primitive->id,
+                             stage_key(&state->previous_depth, pixel), previous_id(state, pixel));
+}
+
 /* Traces and blends the layer that was drawn. */
 static Result blend_peel(Stage *stage)
 {
@@ -123,7 +132,11 @@ static Result blend_peel(Stage *stage)
     if (result == RESULT_OK)
         result = stage_put(stage, state->peel, "id", &state->layer.primitive);
     if (result == RESULT_OK)
+        result = details_put_rejected(stage, state->peel, &state->layer.primitive, is_peeled);
+    if (result == RESULT_OK)
         result = stage_light(stage, &state->layer, true);
+    if (result == RESULT_OK)
+        result = stage_put_source(stage, state->peel);
     if (result == RESULT_OK)
         result = stage_put(stage, state->peel, "accum", &stage->accum);
     image_swap(&state->layer.depth, &state->previous_depth);

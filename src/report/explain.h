@@ -1,0 +1,30 @@
+/* The page of `peel explain -o`: one file with the pipeline as WebAssembly, the scene, and what gl
+ * and the truth say of the same frame. */
+#ifndef PEEL_REPORT_EXPLAIN_H
+#define PEEL_REPORT_EXPLAIN_H
+
+#include "compare/store.h"
+#include "frame/frame.h"
+
+/* One renderer's frame. */
+typedef struct ExplainSide {
+    const Frame *frame;      /* NULL: it has none */
+    const TraceStore *trace; /* NULL of the truth */
+    const char *missing;     /* without a frame: why, in one line */
+} ExplainSide;
+
+typedef struct ExplainDesc {
+    const char *name, *command; /* of the scene; what makes the page again */
+    const Scene *scene;
+    RenderDesc desc;
+    ExplainSide ref, gl, truth;
+    size_t max_bytes; /* of the page; 0: EXPLAIN_MAX_BYTES */
+} ExplainDesc;
+
+#define EXPLAIN_MAX_BYTES ((size_t)15000000)
+
+/* Writes dir/index.html; dir exists. UNSUPPORTED where the page would be larger than it may be: the
+ * message says what takes the room. Else NO_MEMORY and IO. */
+Result report_explain_write(const ExplainDesc *explain, const char *dir);
+
+#endif
