@@ -4,20 +4,11 @@
 #include "frame/method.h"
 #include "ref/pipeline/fragment.h"
 #include "ref/pipeline/pipeline.h"
-#include "ref/pipeline/retrace_fragments.h"
+#include "ref/pipeline/retrace_state.h"
 #include "ref/pipeline/stage.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-
-struct Retrace {
-    const Scene *scene;
-    RenderDesc desc;
-    Pass pass;         /* of the whole frame */
-    Pool *pool;        /* of one thread, for parts */
-    Geometry unculled; /* empty where nothing is culled */
-    AllTriangles all;
-};
 
 /* What the definition path tells while it draws the pixel. */
 typedef struct Watch {
@@ -121,7 +112,7 @@ static int fragment_of(const History *history, uint32_t primitive)
     return HISTORY_NONE;
 }
 
-static void copy(double *out, const float *values, int count)
+void retrace_copy(double *out, const float *values, int count)
 {
     for (int i = 0; i < count; i++)
         out[i] = (double)values[i];
@@ -139,22 +130,21 @@ static void copy_term(const ShadeTerm *term, HistoryTerm *out)
         .specular = (double)term->specular,
         .attenuation = (double)term->attenuation,
     };
-    copy(out->fresnel, term->fresnel, 3);
-    copy(out->term, term->term, 3);
-    copy(out->sum, term->sum, 3);
+    retrace_copy(out->fresnel, term->fresnel, 3);
+    retrace_copy(out->term, term->term, 3);
+    retrace_copy(out->sum, term->sum, 3);
 }
 
-/* A lit surface and its terms. */
-static Result put_shading(const Pass *pass, History *history, HistorySurface *surface,
-                          const ShadeForm *form, const Texel *texel, const float source[4])
+Result retrace_put_shading(const Pass *pass, History *history, HistorySurface *surface,
+                           const ShadeForm *form, const Texel *texel, const float source[4])
 {
-    copy(surface->position, texel->position, 3);
-    copy(surface->normal, texel->normal, 3);
-    copy(surface->base, texel->diffuse, 4);
+    retrace_copy(surface->position, texel->position, 3);
+    retrace_copy(surface->normal, texel->normal, 3);
+    retrace_copy(surface->base, texel->diffuse, 4);
     surface->roughness = (double)texel->material[0];
     surface->metallic = (double)texel->material[1];
     surface->occlusion = (double)texel->material[2];
-    copy(surface->source, source, 4);
+    retrace_copy(surface->source, source, 4);
     surface->lit = true;
     size_t count = pass->view.light_count;
     if (form->model == SHADING_PHONG)
@@ -169,7 +159,7 @@ static Result put_shading(const Pass *pass, History *history, HistorySurface *su
             copy_term(&terms[i], &out[i]);
         surface->first_term = history->term_count - count;
         surface->term_count = count;
-        copy(surface->ambient, ambient, 3);
+        retrace_copy(surface->ambient, ambient, 3);
     }
     free(terms);
     return room ? RESULT_OK : RESULT_NO_MEMORY;
@@ -184,8 +174,9 @@ static void on_shade(PassWatch *base, size_t pixel, uint32_t primitive, const Sh
     int index = fragment_of(watch->history, primitive);
     if (index == HISTORY_NONE || watch->history->fragments[index].surface.lit)
         return; /* a repeated layer is lit as it was */
-    watch->result = put_shading(watch->pass, watch->history,
-                                &watch->history->fragments[index].surface, form, texel, source);
+    watch->result =
+        retrace_put_shading(watch->pass, watch->history, &watch->history->fragments[index].surface,
+                            form, texel, source);
 }
 
 /* What a blend of no fragment's puts into the accumulation. */
@@ -242,7 +233,7 @@ static void on_blend(PassWatch *base, size_t pixel, uint32_t primitive, const ch
     watch->history->step_count--; /* what came before it names it */
     name_step(watch, primitive, step);
     watch->history->step_count++;
-    copy(step->source, source, 4);
+    retrace_copy(step->source, source, 4);
     history_values(format, before, step->before);
     history_values(format, after, step->after);
 }
@@ -264,7 +255,7 @@ static const char *note_of(const RenderDesc *desc)
     }
 }
 
-static History begin(const Retrace *retrace, const char *renderer, int x, int y)
+History retrace_begin(const Retrace *retrace, const char *renderer, int x, int y)
 {
     const RenderDesc *desc = &retrace->desc;
     return (History){.renderer = renderer,
@@ -276,8 +267,7 @@ static History begin(const Retrace *retrace, const char *renderer, int x, int y)
                      .note = note_of(desc)};
 }
 
-/* The accumulation and the images, and the transmittance in front of the opaque surface. */
-static void put_results(const PixelTrace *trace, const Frame *frame, int x, int y, History *out)
+void retrace_put_results(const PixelTrace *trace, const Frame *frame, int x, int y, History *out)
 {
     const PixelValue *accum = pixel_trace_find(trace, "accum");
     double behind = 1.0;
@@ -312,7 +302,7 @@ static Result draw(const Retrace *retrace, Pass *pass, int x, int y, History *ou
         uint32_t saved = op_enter();
         result = retrace_decide(&retrace->pass, &trace, frame.layers.lost_to_overflow > 0, out);
         op_leave(saved);
-        put_results(&trace, &frame, x, y, out);
+        retrace_put_results(&trace, &frame, x, y, out);
     }
     pixel_trace_free(&trace);
     frame_free(&frame);
@@ -340,7 +330,7 @@ static Result draw_part(Retrace *retrace, int x, int y, History *out)
     return result;
 }
 
-static Result check_pixel(const Retrace *retrace, int x, int y)
+Result retrace_check_pixel(const Retrace *retrace, int x, int y)
 {
     const View *view = &retrace->pass.view;
     if (x >= 0 && y >= 0 && x < view->width && y < view->height)
@@ -349,7 +339,7 @@ static Result check_pixel(const Retrace *retrace, int x, int y)
                        y, view->width - 1, view->height - 1);
 }
 
-static Result find_fragments(const Retrace *retrace, int x, int y, History *out)
+Result retrace_find_at(const Retrace *retrace, int x, int y, History *out)
 {
     const Pass *pass = &retrace->pass;
     uint32_t saved = op_enter();
@@ -360,10 +350,10 @@ static Result find_fragments(const Retrace *retrace, int x, int y, History *out)
 
 Result retrace_pixel(Retrace *retrace, int x, int y, History *out)
 {
-    *out = begin(retrace, "ref", x, y);
-    Result result = check_pixel(retrace, x, y);
+    *out = retrace_begin(retrace, "ref", x, y);
+    Result result = retrace_check_pixel(retrace, x, y);
     if (result == RESULT_OK)
-        result = find_fragments(retrace, x, y, out);
+        result = retrace_find_at(retrace, x, y, out);
     if (result != RESULT_OK)
         return result;
     /* Which nodes find room depends on all pixels. */

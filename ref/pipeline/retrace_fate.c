@@ -12,7 +12,7 @@ typedef struct Decide {
     const PixelTrace *trace;
     History *history;
     bool overflowed;
-    bool ended; /* the last pass had no layer */
+    bool ended;                     /* the last pass had no layer */
     uint32_t opaque, far;           /* depth codes */
     int number;                     /* of the pass */
     uint32_t previous, previous_id; /* of the layer in front, from the second pass on */
