@@ -66,7 +66,11 @@ draw.what = (buffer, channel) => buffer.channels === 1 ? buffer.name
                                                        : `${buffer.name}.${"rgba"[channel]}`;
 
 /* What a texel fetch would give of a channel. */
-draw.value = (buffer, at) => app.stored(buffer.data[at], buffer.format);
+draw.value = (buffer, at) => {
+    const stored = buffer.data[at];
+    return buffer.format === "rgba32f" || buffer.format === "d32f" ? stored
+                                                                   : app.stored(stored, buffer.format);
+};
 
 /* Whether the pass that made the buffer drew nothing at pixel i. */
 draw.isEmpty = (buffer, i) => {
@@ -77,10 +81,11 @@ draw.isEmpty = (buffer, i) => {
 /* Distance from the eye along the view axis, of a window depth. */
 draw.distance = (depth) => {
     const { near, far } = app.scene.cameras[app.settings.camera];
-    const range = app.settings["depth-range"];
-    const d = range.choices[range.value] === "reversed" ? 1 - depth : depth;
+    const d = draw.reversed() ? 1 - depth : depth;
     return far === null ? near / (1 - d) : near * far / (far - d * (far - near));
 };
+
+draw.reversed = () => app.choice("depth-range") === "reversed";
 
 /* Least and greatest distance of all that the frame's depth buffers hold. */
 draw.distances = () => {
@@ -89,18 +94,22 @@ draw.distances = () => {
     const drawn = app.frame.buffers.filter((one) => /^(opaque|peel\.\d+)\.depth$/.test(one.name));
     if (app.frame.buffer("peel.0.depth") === undefined && walk.limits(0))
         drawn.push(walk.limit(0, 0), walk.limit(0, 1));
-    let low = Infinity, high = 0;
-    for (const buffer of drawn)
-        for (let i = 0; i < buffer.data.length; i++) {
-            const z = draw.isEmpty(buffer, i) ? NaN : draw.distance(draw.value(buffer, i));
-            if (!Number.isFinite(z))
-                continue;
-            low = Math.min(low, z);
-            high = Math.max(high, z);
-        }
+    const ends = drawn.map((buffer) => draw.extremes(Array.from(buffer.data, (_, i) =>
+        draw.isEmpty(buffer, i) ? NaN : draw.value(buffer, i)), null)).filter(Boolean).flat();
     draw.distances.frame = app.frame;
-    draw.distances.range = low <= high ? [low, high] : [0, 1];
+    draw.distances.range = draw.extremes(ends.map(draw.distance));
     return draw.distances.range;
+};
+
+/* Least and greatest of those that are finite. */
+draw.extremes = (values, none = [0, 1]) => {
+    let low = Infinity, high = -Infinity;
+    for (const value of values)
+        if (Number.isFinite(value)) {
+            low = Math.min(low, value);
+            high = Math.max(high, value);
+        }
+    return low <= high ? [low, high] : none;
 };
 
 draw.depth = (buffer) => {
@@ -295,7 +304,12 @@ draw.counts = (buffer, data, what, label) => {
 draw.slice = (rows) => {
     if (!app.pixel)
         return [];
-    const [low, high] = draw.distances(), { width } = app.frame, height = Math.ceil(width * 0.45);
+    const { width } = app.frame, height = Math.ceil(width * 0.45);
+    const distances = rows.map(({ buffer }) => [...Array(width).keys()].map((x) => {
+        const i = app.pixel[1] * width + x;
+        return draw.isEmpty(buffer, i) ? NaN : draw.distance(draw.value(buffer, i));
+    }));
+    const [low, high] = draw.extremes(distances.flat());
     const rgba = new Uint8ClampedArray(4 * width * height);
     const put = (x, y, color) => {
         for (let dy = 0; dy < 2; dy++)
@@ -304,15 +318,11 @@ draw.slice = (rows) => {
     };
     for (let y = 0; y < height; y += 4)
         put(app.pixel[0], y, [150, 150, 150]);
-    for (const { buffer, color } of rows)
-        for (let x = 0; x < width; x++) {
-            const i = app.pixel[1] * width + x;
-            if (draw.isEmpty(buffer, i))
-                continue;
-            const t = (draw.distance(draw.value(buffer, i)) - low) / Math.max(high - low, 1e-9);
-            put(x, Math.round((height - 4) * (1 - t)) + 1, color);
-        }
+    rows.forEach(({ color }, row) => distances[row].forEach((z, x) => {
+        if (Number.isFinite(z))
+            put(x, Math.round((height - 6) * (high - z) / Math.max(high - low, 1e-9)) + 2, color);
+    }));
     const legend = rows.filter(({ text }) => text).map((row) => ({ ...row, pattern: "plain" }));
-    return [{ title: `The pixel's row from above: the eye is below`, picture: {
+    return [{ title: `The pixel's row, from above; the eye is below`, picture: {
         width, height, rgba, legend, plain: true, describe: () => [] } }];
 };

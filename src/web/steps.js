@@ -93,7 +93,7 @@ steps.show = () => {
 };
 
 steps.showPictures = (step) => {
-    const made = step.pictures().map((one) => one instanceof Node ? one
+    const made = [...step.pictures(), ...sides.pictures(step)].map((one) => one instanceof Node ? one
                                               : figure.make(one.title, one.picture));
     const count = step.kind === "naive" ? 3 : Math.min(made.length, 4);
     steps.at("pictures").className = `pictures count-${count}`;
@@ -102,6 +102,7 @@ steps.showPictures = (step) => {
 };
 
 steps.showCode = ({ code, lines }) => {
+    steps.at("code").parentElement.hidden = lines.length === 0;
     steps.at("code").replaceChildren(...lines.map((text, i) => {
         const line = app.element("li", {}, app.element("code", { textContent: text }));
         if (code.includes(i + 1))
@@ -120,10 +121,9 @@ steps.showEquation = () => {
 };
 
 steps.showMethods = () => {
-    const { choices, value } = app.settings.method;
-    steps.at("method").replaceChildren(...choices.map((name) =>
+    steps.at("method").replaceChildren(...app.settings.method.choices.map((name) =>
         app.element("option", { value: name, textContent: name })));
-    steps.at("method").value = choices[value];
+    steps.at("method").value = app.choice("method");
 };
 
 app.on("step", steps.show);

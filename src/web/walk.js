@@ -115,7 +115,9 @@ walk.naive = () => walk.step({
         return [figure.make("Painter: objects sorted and blended", draw.bytes({ ...display,
                     name: "painter.display" })),
                 figure.make("Each pixel's fragments in order", draw.bytes(app.frame.buffer("display"))),
-                figure.make("Where they differ", other)];
+                figure.make("Where they differ", other),
+                ...(other.count === 0 ? [walk.says("Of this scene, seen from here, the painter's " +
+                    "image is right.")] : [])];
     })],
     source: "M. Newell, R. Newell, T. Sancha, A Solution to the Hidden Surface Problem, ACM 1972",
 });

@@ -142,6 +142,5 @@ walk.peeling = () => {
 walk.METHODS = { "peel": walk.peeling, "peel-id": walk.peeling, "forward": walk.peeling };
 
 app.makeSteps = () => {
-    const { choices, value } = app.settings.method;
-    return (walk.METHODS[choices[value]] ?? walk.peeling)();
+    return (walk.METHODS[app.choice("method")] ?? walk.peeling)();
 };

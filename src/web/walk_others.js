@@ -24,15 +24,13 @@ walk.DUAL_CODE = [
 
 /* The min-max depths that peel k takes: found by the pass before. */
 walk.limits = (k) => {
-    const method = app.settings.method.choices[app.settings.method.value];
-    return app.frame.buffer(`${method}.${k === 0 ? "first" : k - 1}.depth`);
+    return app.frame.buffer(`${app.choice("method")}.${k === 0 ? "first" : k - 1}.depth`);
 };
 
 /* One of the two as depths: channel 0 holds minus the nearest distance, 1 the farthest; −2 is none. */
 walk.limit = (k, channel) => {
     const both = walk.limits(k), { width, height } = both;
-    const range = app.settings["depth-range"];
-    const reversed = range.choices[range.value] === "reversed";
+    const reversed = draw.reversed();
     const data = new Float32Array(width * height).map((_, i) => {
         const stored = both.data[2 * i + channel], distance = channel === 0 ? -stored : stored;
         return stored === -2 ? NaN : reversed ? -distance : distance;
@@ -78,7 +76,7 @@ walk.dualSlice = (k) => {
 };
 
 walk.dualLayers = (k) => {
-    const method = app.settings.method.choices[app.settings.method.value];
+    const method = app.choice("method");
     const names = ["front_diffuse", "back_diffuse", "front_normal", "back_normal", "front_material",
                    "back_material", "front", "back"].map((what) => `${method}.${k}.${what}`)
         .filter((name) => app.frame.buffer(name));
@@ -96,7 +94,7 @@ walk.dualLayers = (k) => {
 };
 
 walk.dualBlend = (k) => {
-    const method = app.settings.method.choices[app.settings.method.value];
+    const method = app.choice("method");
     const names = [`peel.${k}.accum`, `${method}.${k}.back_accum`].filter((name) =>
         app.frame.buffer(name));
     return {
@@ -114,7 +112,7 @@ walk.dualBlend = (k) => {
 };
 
 walk.dual = () => {
-    const { peels } = app.frame, method = app.settings.method.choices[app.settings.method.value];
+    const { peels } = app.frame, method = app.choice("method");
     return [walk.naive(), ...walk.opaque(walk.DUAL_CODE),
             ...walk.peels([["fronts", walk.dualFronts], ["layers", walk.dualLayers],
                            ["blend", walk.dualBlend]], walk.DUAL_CODE),
