@@ -73,10 +73,11 @@ static Result check_size(const ExplainDesc *explain, const ExplainRoom *room, si
                        1e-6 * (double)(size - room->scene - room->gl - room->truth));
 }
 
-static Result write(const ExplainDesc *explain, const Text *data, const char *dir)
+static Result write(const ExplainDesc *explain, const Text *data, const char *dir,
+                    const char *file)
 {
     FileWriter page;
-    char *path = pictures_path(dir, "index.html");
+    char *path = pictures_path(dir, file);
     Result result = path ? file_writer_open(path, &page) : RESULT_NO_MEMORY;
     free(path);
     if (result != RESULT_OK)
@@ -85,7 +86,8 @@ static Result write(const ExplainDesc *explain, const Text *data, const char *di
     return file_writer_close(&page, true);
 }
 
-Result report_explain_write(const ExplainDesc *explain, const char *dir)
+Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
+                            size_t *bytes)
 {
     Text data = {0};
     ExplainRoom room = {0};
@@ -93,7 +95,9 @@ Result report_explain_write(const ExplainDesc *explain, const char *dir)
     if (result == RESULT_OK)
         result = check_size(explain, &room, page_size(&data));
     if (result == RESULT_OK)
-        result = write(explain, &data, dir);
+        result = write(explain, &data, dir, file);
+    if (bytes)
+        *bytes = page_size(&data);
     text_free(&data);
     return result;
 }

@@ -13,18 +13,27 @@ typedef struct ExplainSide {
     const char *missing;     /* without a frame: why, in one line */
 } ExplainSide;
 
+/* A page that is a lesson: what src/web/lessons.js says stands beside it. */
+typedef struct ExplainLesson {
+    int number; /* from 1 */
+    const char *const *titles; /* of all lessons */
+    int count;
+} ExplainLesson;
+
 typedef struct ExplainDesc {
     const char *name, *command; /* of the scene; what makes the page again */
     const Scene *scene;
     RenderDesc desc;
     ExplainSide ref, gl, truth;
-    size_t max_bytes; /* of the page; 0: EXPLAIN_MAX_BYTES */
+    size_t max_bytes;            /* of the page; 0: EXPLAIN_MAX_BYTES */
+    const ExplainLesson *lesson; /* NULL: none */
 } ExplainDesc;
 
 #define EXPLAIN_MAX_BYTES ((size_t)15000000)
 
-/* Writes dir/index.html; dir exists. UNSUPPORTED where the page would be larger than it may be: the
- * message says what takes the room. Else NO_MEMORY and IO. */
-Result report_explain_write(const ExplainDesc *explain, const char *dir);
+/* Writes dir/file; dir exists. *bytes, which may be NULL: the page's size. UNSUPPORTED where the page
+ * would be larger than it may be: the message says what takes the room. Else NO_MEMORY and IO. */
+Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
+                            size_t *bytes);
 
 #endif
