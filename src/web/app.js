@@ -126,6 +126,7 @@ app.tell = (...whats) => {
  * of a choice, a number, size [w, h]. Resolves when the new frame, if one is needed, is there. */
 app.change = async ({ step, pixel, view, ...settings }) => {
     const told = [];
+    app.say("");
     try {
         if (Object.keys(settings).length > 0)
             await app.set(settings);
@@ -223,6 +224,9 @@ app.useFrame = (frame) => {
     if (app.pixel)
         app.toPixel(app.pixel);
 };
+
+/* The name of the choice of a setting that has some. */
+app.choice = (name) => app.settings[name].choices[app.settings[name].value];
 
 app.copySettings = () => Object.fromEntries(
     Object.entries(app.settings).map(([name, one]) => [name, one.choices ? one.value : one]));

@@ -66,7 +66,11 @@ draw.what = (buffer, channel) => buffer.channels === 1 ? buffer.name
                                                        : `${buffer.name}.${"rgba"[channel]}`;
 
 /* What a texel fetch would give of a channel. */
-draw.value = (buffer, at) => app.stored(buffer.data[at], buffer.format);
+draw.value = (buffer, at) => {
+    const stored = buffer.data[at];
+    return buffer.format === "rgba32f" || buffer.format === "d32f" ? stored
+                                                                   : app.stored(stored, buffer.format);
+};
 
 /* Whether the pass that made the buffer drew nothing at pixel i. */
 draw.isEmpty = (buffer, i) => {
@@ -77,27 +81,35 @@ draw.isEmpty = (buffer, i) => {
 /* Distance from the eye along the view axis, of a window depth. */
 draw.distance = (depth) => {
     const { near, far } = app.scene.cameras[app.settings.camera];
-    const range = app.settings["depth-range"];
-    const d = range.choices[range.value] === "reversed" ? 1 - depth : depth;
+    const d = draw.reversed() ? 1 - depth : depth;
     return far === null ? near / (1 - d) : near * far / (far - d * (far - near));
 };
+
+draw.reversed = () => app.choice("depth-range") === "reversed";
 
 /* Least and greatest distance of all that the frame's depth buffers hold. */
 draw.distances = () => {
     if (draw.distances.frame === app.frame)
         return draw.distances.range;
-    let low = Infinity, high = 0;
-    for (const buffer of app.frame.buffers.filter((one) => /^(opaque|peel.\d+).depth$/.test(one.name)))
-        for (let i = 0; i < buffer.data.length; i++) {
-            if (draw.isEmpty(buffer, i))
-                continue;
-            const z = draw.distance(draw.value(buffer, i));
-            low = Math.min(low, z);
-            high = Math.max(high, z);
-        }
+    const drawn = app.frame.buffers.filter((one) => /^(opaque|peel\.\d+)\.depth$/.test(one.name));
+    if (app.frame.buffer("peel.0.depth") === undefined && walk.limits(0))
+        drawn.push(walk.limit(0, 0), walk.limit(0, 1));
+    const ends = drawn.map((buffer) => draw.extremes(Array.from(buffer.data, (_, i) =>
+        draw.isEmpty(buffer, i) ? NaN : draw.value(buffer, i)), null)).filter(Boolean).flat();
     draw.distances.frame = app.frame;
-    draw.distances.range = low <= high ? [low, high] : [0, 1];
+    draw.distances.range = draw.extremes(ends.map(draw.distance));
     return draw.distances.range;
+};
+
+/* Least and greatest of those that are finite. */
+draw.extremes = (values, none = [0, 1]) => {
+    let low = Infinity, high = -Infinity;
+    for (const value of values)
+        if (Number.isFinite(value)) {
+            low = Math.min(low, value);
+            high = Math.max(high, value);
+        }
+    return low <= high ? [low, high] : none;
 };
 
 draw.depth = (buffer) => {
@@ -127,6 +139,13 @@ draw.normal = (buffer) => draw.picture(buffer,
         const n = [0, 1, 2].map((k) => k < buffer.channels ? draw.value(buffer, at + k) : 0);
         return (buffer.channels === 2 ? draw.octahedral(n[0], n[1]) : n).map((v) => 127.5 * v + 127.5);
     }, draw.describe(buffer, buffer.channels === 2 ? "uv" : "xyz"));
+
+/* Of the dual methods: the direction in two channels, then opacity and a mask. */
+draw.octahedrals = (buffer) => draw.picture(buffer, "Red to the right, green up, blue to the eye.",
+    (at) => draw.value(buffer, at + 3) === 0 ? null
+        : draw.octahedral(draw.value(buffer, at), draw.value(buffer, at + 1)).map((v) =>
+            127.5 * v + 127.5),
+    draw.describe(buffer, ["u", "v", "\u03b1", "mask"]));
 
 draw.position = (buffer) => {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -278,4 +297,32 @@ draw.counts = (buffer, data, what, label) => {
     return draw.picture({ ...buffer, channels: 1 }, `None (hatched) to ${most} (dark).`,
         (at) => data[at] === 0 ? null : draw.ramp(data[at] / Math.max(most, 1)),
         (x, y) => [[label, data[y * buffer.width + x], "count", what]]);
+};
+
+/* A row of the picture seen from above: distance upwards. rows: {buffer, color, text} of depths;
+ * text "" is not in the legend. A list of one, or of none without a pixel. */
+draw.slice = (rows) => {
+    if (!app.pixel)
+        return [];
+    const { width } = app.frame, height = Math.ceil(width * 0.45);
+    const distances = rows.map(({ buffer }) => [...Array(width).keys()].map((x) => {
+        const i = app.pixel[1] * width + x;
+        return draw.isEmpty(buffer, i) ? NaN : draw.distance(draw.value(buffer, i));
+    }));
+    const [low, high] = draw.extremes(distances.flat());
+    const rgba = new Uint8ClampedArray(4 * width * height);
+    const put = (x, y, color) => {
+        for (let dy = 0; dy < 2; dy++)
+            if (y + dy >= 0 && y + dy < height)
+                rgba.set([...color, 255], 4 * ((y + dy) * width + x));
+    };
+    for (let y = 0; y < height; y += 4)
+        put(app.pixel[0], y, [150, 150, 150]);
+    rows.forEach(({ color }, row) => distances[row].forEach((z, x) => {
+        if (Number.isFinite(z))
+            put(x, Math.round((height - 6) * (high - z) / Math.max(high - low, 1e-9)) + 2, color);
+    }));
+    const legend = rows.filter(({ text }) => text).map((row) => ({ ...row, pattern: "plain" }));
+    return [{ title: `The pixel's row, from above; the eye is below`, picture: {
+        width, height, rgba, legend, plain: true, describe: () => [] } }];
 };

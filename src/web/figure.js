@@ -4,7 +4,8 @@
 
 const figure = { NEIGHBOURS: 11, live: new Set() };
 
-/* picture: of draw. title: text. Clicks choose the pixel. */
+/* picture: of draw; plain: its points are no pixels of the frame. title: text. Clicks choose the
+ * pixel. */
 figure.make = (title, picture) => {
     const canvas = app.element("canvas", { width: picture.width, height: picture.height });
     canvas.getContext("2d").putImageData(
@@ -17,6 +18,10 @@ figure.make = (title, picture) => {
     const element = app.element("figure", { className: "picture" },
         app.element("figcaption", {}, app.element("strong", { textContent: title })), frame,
         figure.legend(picture.legend), pixel);
+    if (picture.plain) {
+        frame.classList.add("plain");
+        return element;
+    }
     canvas.addEventListener("click", (event) => figure.choose(event, canvas));
     canvas.addEventListener("pointermove", (event) => figure.hover(event, canvas, picture));
     const one = { element, picture, canvas, marker, pixel };

@@ -40,6 +40,14 @@ sides.glData = (name) => {
 /* The truth's final image, FORMAT_RGBA32F, or null. It does not depend on the method. */
 sides.truth = () => app.asCarried(["method"]) ? sides.truthFinal : null;
 
+/* Where gl stored other bits in a step's buffers. */
+sides.pictures = (step) => step.buffers.flatMap((name) => {
+    const theirs = sides.gl.get(name)?.differing > 0 && sides.glData(name);
+    const ours = app.frame.buffer(name);
+    return theirs ? [{ title: `${name}: where gl differs`,
+                       picture: draw.differing({ ...ours, data: theirs }, ours) }] : [];
+});
+
 /* ---- in words ---- */
 
 /* About a step's buffers: a list of nodes and texts. */

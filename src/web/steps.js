@@ -93,14 +93,16 @@ steps.show = () => {
 };
 
 steps.showPictures = (step) => {
-    const made = step.pictures().map((one) => one instanceof Node ? one
+    const made = [...step.pictures(), ...sides.pictures(step)].map((one) => one instanceof Node ? one
                                               : figure.make(one.title, one.picture));
-    steps.at("pictures").className = `pictures count-${Math.min(made.length, 4)}`;
+    const count = step.kind === "naive" ? 3 : Math.min(made.length, 4);
+    steps.at("pictures").className = `pictures count-${count}`;
     steps.at("pictures").replaceChildren(...made);
     figure.update();
 };
 
 steps.showCode = ({ code, lines }) => {
+    steps.at("code").parentElement.hidden = lines.length === 0;
     steps.at("code").replaceChildren(...lines.map((text, i) => {
         const line = app.element("li", {}, app.element("code", { textContent: text }));
         if (code.includes(i + 1))
@@ -119,14 +121,17 @@ steps.showEquation = () => {
 };
 
 steps.showMethods = () => {
-    const { choices, value } = app.settings.method;
-    steps.at("method").replaceChildren(...choices.map((name) =>
+    steps.at("method").replaceChildren(...app.settings.method.choices.map((name) =>
         app.element("option", { value: name, textContent: name })));
-    steps.at("method").value = choices[value];
+    steps.at("method").value = app.choice("method");
 };
 
 app.on("step", steps.show);
-app.on("pixel", steps.showEquation);
+app.on("pixel", () => {
+    steps.showEquation();
+    if (document.querySelector("#step-pictures .plain"))
+        steps.showPictures(app.steps[app.step]);
+});
 app.on("frame", steps.showMethods);
 app.on("view", () => steps.play(false));
 steps.bind();

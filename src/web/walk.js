@@ -16,19 +16,19 @@ walk.RAPETTA = "L. Rapetta, OpenGL 4.6 Deferred Renderer with Deferred Depth Pee
 walk.EVERITT = "C. Everitt, Interactive Order-Independent Transparency, NVIDIA, 2001";
 
 walk.PEEL_CODE = [
-    "draw the opaque surfaces: opaque depth, G-buffer",
+    "draw the opaque surfaces into a G-buffer",
     "accum \u2190 (0, 0, 0), T \u2190 1",
     "for k = 0, 1, 2, \u2026",
-    "    draw the transparent surfaces; of each fragment:",
-    "        discard if depth \u2265 opaque depth",
-    "        discard if k > 0 and depth \u2264 previous depth",
-    "        depth test: keep the nearest; store its G-buffer",
-    "    stop if nothing was drawn",
-    "    light the layer: source \u2190 (colour \u00b7 \u03b1, \u03b1)",
-    "    accum \u2190 accum + T \u00b7 source.rgb",
-    "    T \u2190 T \u00b7 (1 \u2212 \u03b1)",
-    "    swap depth and previous depth",
-    "light the opaque surfaces, blend them in the same way",
+    "  for each fragment of the transparent surfaces",
+    "    discard if depth \u2265 opaque depth",
+    "    discard if k > 0 and depth \u2264 previous depth",
+    "    keep the nearest, store its G-buffer",
+    "  stop if nothing was kept",
+    "  light the layer: source \u2190 (colour \u00b7 \u03b1, \u03b1)",
+    "  accum \u2190 accum + T \u00b7 source.rgb",
+    "  T \u2190 T \u00b7 (1 \u2212 \u03b1)",
+    "  swap depth and previous depth",
+    "light the opaque surfaces, blend them likewise",
     "final \u2190 accum + T \u00b7 background",
     "display \u2190 (final / (final + 1)) ^ (1/2.2)",
 ];
@@ -107,15 +107,17 @@ walk.naive = () => walk.step({
         "its surfaces do not: where objects cross or surround each other, or show two of their " +
         "own sides, no order of objects is right for every pixel. Depth peeling decides for every " +
         "pixel by itself.",
-    lines: ["sort the objects, far to near", "for each object", "    for each of its fragments",
-            "        colour \u2190 source.rgb + (1 \u2212 \u03b1) \u00b7 colour"],
+    lines: ["sort the objects, far to near", "for each object", "  for each of its fragments",
+            "    colour \u2190 source.rgb + (1 \u2212 \u03b1) \u00b7 colour"],
     code: [1, 4],
     pictures: () => [walk.later(walk.other("painter"), ({ display }) => {
         const other = draw.differing(display, app.frame.buffer("display"));
         return [figure.make("Painter: objects sorted and blended", draw.bytes({ ...display,
                     name: "painter.display" })),
                 figure.make("Each pixel's fragments in order", draw.bytes(app.frame.buffer("display"))),
-                figure.make("Where they differ", other)];
+                figure.make("Where they differ", other),
+                ...(other.count === 0 ? [walk.says("Of this scene, seen from here, the painter's " +
+                    "image is right.")] : [])];
     })],
     source: "M. Newell, R. Newell, T. Sancha, A Solution to the Hidden Surface Problem, ACM 1972",
 });
@@ -213,13 +215,25 @@ walk.peelDepth = (k) => ({
     buffers: [`peel.${k}.depth`],
     pictures: () => [
         ...(k > 0 ? walk.show(`peel.${k - 1}.depth`, `Previous depth (buffer ${walk.side(k - 1)})`) : []),
-        ...walk.show(`peel.${k}.depth`, `New depth (buffer ${walk.side(k)})`)],
+        ...walk.show(`peel.${k}.depth`, `New depth (buffer ${walk.side(k)})`),
+        ...draw.slice(walk.peelSlice(k))],
     equation: (pixel) => walk.hasFragment(`peel.${k}`, pixel)
         ? walk.depths([...(k > 0 ? [["previous depth", `peel.${k - 1}.depth`]] : []),
                        ["depth", `peel.${k}.depth`], ["opaque depth", "opaque.depth"]], pixel)
         : walk.says("This peel found nothing at this pixel."),
     source: walk.EVERITT,
 });
+
+/* The layers so far in the pixel's row. */
+walk.peelSlice = (k) => {
+    const layer = (peel, color, text) => ({ buffer: app.frame.buffer(`peel.${peel}.depth`), color, text });
+    const rows = [{ buffer: app.frame.buffer("opaque.depth"), color: [1, 115, 178],
+                    text: "opaque depth" }];
+    for (let peel = 0; peel < k; peel++)
+        rows.push(layer(peel, peel === k - 1 ? [120, 126, 136] : [188, 192, 198],
+                        peel === k - 1 ? "previous depth" : ""));
+    return [...rows, layer(k, [222, 143, 5], "new depth")].filter(({ buffer }) => buffer);
+};
 
 walk.GBUFFER = { normal: "Normal", position: "Position", diffuse: "Base colour",
                  color: "Lit, premultiplied colour", material: "Material", primitive: "Triangle" };

@@ -91,7 +91,9 @@ walk.truth = () => walk.step({
     text: walk.truthText(),
     buffers: ["accum", "display"],
     pictures: () => sides.truth()
-        ? [{ title: "Truth", picture: draw.light(walk.truthBuffer(), "Linear light, as the display " +
+        ? [...walk.show("final", "This frame", (buffer) => draw.light(buffer, "Linear light, as the " +
+                                                                  "display would show it.")),
+           { title: "Truth", picture: draw.light(walk.truthBuffer(), "Linear light, as the display " +
                                                   "would show it.") },
            { title: "Difference of this frame", picture: draw.error(app.frame.buffer("final"),
                                                                     sides.truth(), "truth.error") }]
@@ -140,6 +142,5 @@ walk.peeling = () => {
 walk.METHODS = { "peel": walk.peeling, "peel-id": walk.peeling, "forward": walk.peeling };
 
 app.makeSteps = () => {
-    const { choices, value } = app.settings.method;
-    return (walk.METHODS[choices[value]] ?? walk.peeling)();
+    return (walk.METHODS[app.choice("method")] ?? walk.peeling)();
 };
