@@ -9,7 +9,10 @@
 
 enum {
     NUMBER = 32,
-    WIDE = 132 /* columns from which decimal and hexadecimal stand beside each other */
+    WIDE = 136, /* columns from which decimal and hexadecimal stand beside each other */
+    NAME = 10,
+    NAME_WIDE = 34,
+    BEFORE_PASSES = 75 /* columns of a fragment's row, but for a wide name */
 };
 
 typedef enum Tone {
@@ -62,10 +65,16 @@ static const char *hexadecimal(double value, char out[NUMBER])
     return out;
 }
 
-/* Columns of a number of a history: truth's are doubles. */
-static int width_of(const History *history)
+static bool is_wide(const Writer *writer)
 {
-    return strcmp(history->accum_format, "double") == 0 ? 22 : 14;
+    return writer->style.columns >= WIDE;
+}
+
+/* Columns of a number of a history: the truth's doubles are rounded to single where they find no
+ * room. */
+static int width_of(const Writer *writer, const History *history)
+{
+    return is_wide(writer) && strcmp(history->accum_format, "double") == 0 ? 22 : 14;
 }
 
 /* ---- fragments ---- */
@@ -115,14 +124,20 @@ static void describe_fate(const HistoryFragment *fragment, char out[NUMBER + 16]
         snprintf(out, NUMBER + 16, "%s", texts[fragment->fate]);
 }
 
-/* "O" for each pass whose opaque depth rejected it, and so on. */
+/* A letter for each pass; where there are more than columns, how many more. */
 static void print_tests(const Writer *writer, const History *history, size_t index)
 {
     static const char letters[HISTORY_TESTS] = {
         [HISTORY_KEPT] = 'K',    [HISTORY_OPAQUE_DEPTH] = 'o', [HISTORY_PREVIOUS_DEPTH] = 'p',
         [HISTORY_BETWEEN] = 'b', [HISTORY_DEPTH_TEST] = 'd',   [HISTORY_ALPHA_TEST] = 'a'};
-    for (int i = 0; i < history->fragments[index].passes; i++)
+    int passes = history->fragments[index].passes, shown = passes;
+    int room = writer->style.columns - BEFORE_PASSES - (is_wide(writer) ? NAME_WIDE - NAME : 0);
+    if (passes > room)
+        shown = room > 5 ? room - 5 : 0;
+    for (int i = 0; i < shown; i++)
         fputc(letters[history_test(history, index, i)], writer->out);
+    if (shown < passes)
+        fprintf(writer->out, "+%d", passes - shown);
 }
 
 static void print_fragment(const Writer *writer, const History *history,
@@ -132,14 +147,15 @@ static void print_fragment(const Writer *writer, const History *history,
     const char *instance = scene->instances[fragment->instance].name;
     const char *material = scene->materials[fragment->material].name;
     char depth[NUMBER], fate[NUMBER + 16], name[64];
-    bool wide = writer->style.columns >= WIDE;
+    bool wide = is_wide(writer);
+    int room = wide ? NAME_WIDE : NAME;
     snprintf(name, sizeof name, "%s%s%s", instance ? instance : "", wide ? " / " : "",
              wide && material ? material : "");
     describe_fate(fragment, fate);
-    fprintf(writer->out, "%9u  %-*.*s %-5s %-12s %9.5g %6.4g  %s%-22s%s ", fragment->primitive,
-            wide ? 34 : 12, wide ? 34 : 12, name, fragment->front ? "front" : "back",
-            decimal(fragment->depth, depth), fragment->distance, fragment->surface.base[3],
-            tone(writer, tone_of(fragment->fate)), fate, plain(writer));
+    fprintf(writer->out, "%9u  %-*.*s %c %-11s %8.5g %5.3g  %s%-22s%s ", fragment->primitive, room,
+            room, name, fragment->front ? 'F' : 'B', decimal(fragment->depth, depth),
+            fragment->distance, fragment->surface.base[3], tone(writer, tone_of(fragment->fate)),
+            fate, plain(writer));
     print_tests(writer, history, (size_t)(fragment - history->fragments));
     fputc('\n', writer->out);
 }
@@ -150,7 +166,7 @@ static void print_edges(const Writer *writer, const HistoryFragment *fragment)
     bool through = false;
     for (int i = 0; i < 3; i++)
         through = through || fragment->edge[i] == 0;
-    if (!fragment->has_edges || (!through && writer->style.columns < WIDE))
+    if (!fragment->has_edges || (!through && !is_wide(writer)))
         return;
     fprintf(writer->out, "%s           edges ", tone(writer, TONE_WEAK));
     for (int i = 0; i < 3; i++)
@@ -174,16 +190,16 @@ static void print_fragments(const Writer *writer, const History *history)
         sorted[i] = &history->fragments[i];
     qsort(sorted, count, sizeof *sorted, nearer);
     heading(writer, "Fragments, near to far");
-    fprintf(writer->out, "%9s  %-*s %-5s %-12s %9s %6s  %-22s %s\n", "primitive",
-            writer->style.columns >= WIDE ? 34 : 12, "instance", "side", "depth", "distance",
-            "alpha", "fate", "passes");
+    fprintf(writer->out, "%9s  %-*s %c %-11s %8s %5s  %-22s %s\n", "primitive",
+            is_wide(writer) ? NAME_WIDE : NAME, "instance", ' ', "depth", "distance", "alpha",
+            "fate", "passes");
     for (size_t i = 0; i < count; i++) {
         print_fragment(writer, history, sorted[i]);
         print_edges(writer, sorted[i]);
     }
     fprintf(writer->out,
-            "passes: K kept; rejected by: o opaque depth, p previous depth, d depth test, a alpha "
-            "test;\n        b between the two depths of dual peeling\n");
+            "F, B: front or back face. Passes: K kept; rejected by the o opaque depth,\n"
+            "p previous depth, d depth test, a alpha test; b between dual peeling's two depths.\n");
     free(sorted);
 }
 
@@ -193,12 +209,16 @@ static void print_values(const Writer *writer, const char *first, const char *se
                          const double *values, int channels, int width)
 {
     char text[NUMBER];
-    bool wide = writer->style.columns >= WIDE && width < 20;
-    fprintf(writer->out, "  %-11s %-7s", first, second);
+    bool wide = is_wide(writer) && width < 20;
+    double rounded[4];
+    for (int i = 0; i < channels; i++)
+        rounded[i] = width < 20 ? (double)(float)values[i] : values[i];
+    values = rounded;
+    fprintf(writer->out, "  %-10s %-7s", first, second);
     for (int i = 0; i < channels; i++)
         fprintf(writer->out, " %-*s", wide ? 12 : width, decimal(values[i], text));
     if (!wide)
-        fprintf(writer->out, "\n  %-11s %-7s%s", "", "", tone(writer, TONE_WEAK));
+        fprintf(writer->out, "\n  %-10s %-7s%s", "", "", tone(writer, TONE_WEAK));
     for (int i = 0; i < channels; i++)
         fprintf(writer->out, " %-*s", width, hexadecimal(values[i], text));
     fprintf(writer->out, "%s\n", plain(writer));
@@ -225,15 +245,15 @@ static void print_steps(const Writer *writer, const History *history)
 {
     char line[160];
     const char *target = "", *equation = "";
-    int width = width_of(history);
+    int width = width_of(writer, history);
     for (size_t i = 0; i < history->step_count; i++) {
         const HistoryStep *step = &history->steps[i];
         if (strcmp(step->target, target) != 0 || strcmp(step->equation, equation) != 0) {
             snprintf(line, sizeof line, "%s of %s, %s; %s", i ? "Then" : "Blend steps",
                      history->renderer, step->format, equation_text(step->equation));
             heading(writer, line);
-            fprintf(writer->out, "  %-11s %-7s %-*s %-*s %-*s %s\n", step->target, "", width, "R",
-                    width, "G", width, "B", "alpha, transmittance T");
+            fprintf(writer->out, "  %-10s %-7s %-*s %-*s %-*s %s\n", step->target, "", width, "R",
+                    width, "G", width, "B", "alpha / T");
             print_values(writer, "", "before", step->before, step->channels, width);
         }
         target = step->target;
@@ -251,11 +271,11 @@ static void print_ulps(const Writer *writer, const History *history, const doubl
     const History *ref = writer->sides->ref;
     if (!ref || history == ref)
         return;
-    fprintf(writer->out, "  %-11s %-7s", "", "ULP");
+    fprintf(writer->out, "  %-10s %-7s", "", "ULP");
     for (int i = 0; i < 4; i++)
-        fprintf(writer->out, " %-*u", width_of(ref),
+        fprintf(writer->out, " %-*u", is_wide(writer) ? 12 : 14,
                 ulp_distance((float)values[i], (float)ref->final[i]));
-    fprintf(writer->out, " from ref\n");
+    fputc('\n', writer->out);
 }
 
 static void print_sides(const Writer *writer)
@@ -272,7 +292,7 @@ static void print_sides(const Writer *writer)
         print_values(writer, all[i]->renderer, "", rounded, 4, 14);
         print_ulps(writer, all[i], rounded);
     }
-    fprintf(writer->out, "  %-11s", "display");
+    fprintf(writer->out, "  %-10s", "display");
     for (int i = 0; i < 3; i++)
         if (all[i])
             fprintf(writer->out, "  %s %d,%d,%d", all[i]->renderer, all[i]->display[0],
@@ -319,10 +339,11 @@ void report_history(const HistorySides *sides, HistoryStyle style, FILE *out)
     if (!history)
         return;
     history_summary(history, &summary);
-    fprintf(out, "%s, pixel %d,%d of %dx%d, %s, method %s, %s: %s%s%s\n", sides->scene_name,
-            history->x, history->y, sides->width, sides->height, history->renderer,
-            method_info(history->method)->name, history->accum_format, tone(&writer, TONE_HEADING),
-            summary.bytes ? summary.bytes : "", plain(&writer));
+    fprintf(out, "%s%s %d,%d: %s%s\n", tone(&writer, TONE_HEADING), sides->scene_name, history->x,
+            history->y, summary.bytes ? summary.bytes : "", plain(&writer));
+    fprintf(out, "%s at %dx%d, method %s, accumulation %s, depth %s\n", history->renderer,
+            sides->width, sides->height, method_info(history->method)->name, history->accum_format,
+            history->depth_format);
     text_free(&summary);
     if (history->note)
         fprintf(out, "(%s)\n", history->note);
