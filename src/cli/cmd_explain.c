@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct ExplainCommand {
     RenderOptions render;
@@ -28,7 +29,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         state->child_inputs[0] = &command->render;
         return 0;
     case ARGP_KEY_SUCCESS:
-        return command->output ? 0 : options_error("explain: expected -o DIR");
+        return command->output ? 0 : options_error("explain: expected -o DIR or --pixel X,Y");
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -145,8 +146,18 @@ static Result run(ExplainCommand *command, const char *line)
     return result;
 }
 
+static bool asks_for_pixel(int argc, char **argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strncmp(argv[i], "--pixel", strlen("--pixel")) == 0)
+            return true;
+    return false;
+}
+
 int cmd_explain(int argc, char **argv)
 {
+    if (asks_for_pixel(argc, argv))
+        return cmd_explain_pixel(argc, argv);
     ExplainCommand command = {.render = options_default()};
     command.render.desc.width = 320;
     command.render.desc.height = 180;

@@ -28,9 +28,23 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
     return RESULT_OK;
 }
 
+static Result put_all(TraceSink *sink, const TraceBuffer *buffer)
+{
+    PixelFan *fan = (PixelFan *)sink;
+    Result result = RESULT_OK;
+    for (size_t i = 0; i < fan->count && result == RESULT_OK; i++)
+        result = put(&fan->traces[i].sink, buffer);
+    return result;
+}
+
+PixelFan pixel_fan_of(PixelTrace *traces, size_t count)
+{
+    return (PixelFan){.sink = {.put = put_all}, .traces = traces, .count = count};
+}
+
 PixelTrace pixel_trace_of(int x, int y)
 {
-    return (PixelTrace){.sink = {put}, .x = x, .y = y};
+    return (PixelTrace){.sink = {.put = put}, .x = x, .y = y};
 }
 
 void pixel_trace_free(PixelTrace *trace)

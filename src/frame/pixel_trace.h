@@ -24,6 +24,16 @@ typedef struct PixelTrace {
     size_t count, room;
 } PixelTrace;
 
+/* Several pixels of one frame. */
+typedef struct PixelFan {
+    TraceSink sink; /* first */
+    PixelTrace *traces;
+    size_t count;
+} PixelFan;
+
+/* traces: the caller's, who frees them. */
+PixelFan pixel_fan_of(PixelTrace *traces, size_t count);
+
 PixelTrace pixel_trace_of(int x, int y);
 void pixel_trace_free(PixelTrace *trace); /* leaves one without values */
 

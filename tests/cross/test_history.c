@@ -27,21 +27,6 @@ static void ok(Result result)
                   result_message());
 }
 
-/* Gives every buffer to several sinks. */
-typedef struct Fan {
-    TraceSink sink; /* first */
-    PixelTrace traces[TRACED];
-} Fan;
-
-static Result fan_put(TraceSink *sink, const TraceBuffer *buffer)
-{
-    Fan *fan = (Fan *)sink;
-    Result result = RESULT_OK;
-    for (int i = 0; i < TRACED && result == RESULT_OK; i++)
-        result = fan->traces[i].sink.put(&fan->traces[i].sink, buffer);
-    return result;
-}
-
 static void check_bytes(const PixelValue *traced, const double values[4], const char *what,
                         const History *history)
 {
@@ -281,19 +266,19 @@ static void check_frame(const Scene *scene, const RenderDesc *desc, uint64_t see
                         Totals *sum)
 {
     Random random = random_seed(seed);
-    Fan fan = {.sink = {fan_put}};
+    PixelTrace traces[TRACED];
+    PixelFan fan = pixel_fan_of(traces, TRACED);
     Totals totals = {0};
     Frame frame;
     Retrace *retrace;
     for (int i = 0; i < TRACED; i++)
-        fan.traces[i] = pixel_trace_of((int)(random_bits(&random) % (uint64_t)desc->width),
-                                       (int)(random_bits(&random) % (uint64_t)desc->height));
+        traces[i] = pixel_trace_of((int)(random_bits(&random) % (uint64_t)desc->width),
+                                   (int)(random_bits(&random) % (uint64_t)desc->height));
     ok(pipeline_render(scene, desc, &fan.sink, &frame));
     ok(retrace_open(scene, desc, &retrace));
     uint32_t saved = op_enter();
     for (int i = 0; i < TRACED; i++)
-        check_pixel(retrace, desc, &frame, fan.traces[i].x, fan.traces[i].y, &fan.traces[i],
-                    &totals);
+        check_pixel(retrace, desc, &frame, traces[i].x, traces[i].y, &traces[i], &totals);
     if (whole) {
         totals = (Totals){.terms = totals.terms};
         for (int y = 0; y < desc->height; y++)
@@ -306,7 +291,7 @@ static void check_frame(const Scene *scene, const RenderDesc *desc, uint64_t see
         sum->fates[i] += totals.fates[i];
     sum->terms += totals.terms;
     for (int i = 0; i < TRACED; i++)
-        pixel_trace_free(&fan.traces[i]);
+        pixel_trace_free(&traces[i]);
     retrace_close(retrace);
     frame_free(&frame);
 }
