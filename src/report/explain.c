@@ -6,16 +6,18 @@
 #include "report/html_parts.h"
 #include "report/pictures.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-extern const char report_style_css[], page_css[], page_live_css[], page_html[], page_engine_js[],
-    page_draw_js[], page_app_js[], page_number_js[], page_figure_js[], page_sides_js[],
-    page_walk_js[], page_walk_end_js[], page_walk_others_js[], page_methods_js[], page_steps_js[],
-    page_pixel_js[], page_camera_js[], page_edits_js[], page_live_js[], page_controls_js[],
-    page_steer_js[], page_live_panel_js[], page_space_js[], page_lessons_js[], page_course_js[];
+extern const char report_style_css[], page_css[], page_live_css[], page_course_css[], page_html[],
+    page_engine_js[], page_draw_js[], page_app_js[], page_number_js[], page_figure_js[],
+    page_sides_js[], page_walk_js[], page_walk_end_js[], page_walk_others_js[], page_methods_js[],
+    page_steps_js[], page_pixel_js[], page_camera_js[], page_edits_js[], page_live_js[],
+    page_controls_js[], page_steer_js[], page_live_panel_js[], page_space_js[], page_lessons_js[],
+    page_course_js[];
 
-static const char *const styles[] = {report_style_css, page_css, page_live_css};
+static const char *const styles[] = {report_style_css, page_css, page_live_css, page_course_css};
 static const char *const scripts[] = {
     page_engine_js,   page_draw_js,  page_app_js,        page_number_js,      page_figure_js,
     page_sides_js,    page_walk_js,  page_walk_end_js,   page_walk_others_js, page_methods_js,
@@ -36,7 +38,13 @@ static void put_page(FileWriter *page, const ExplainDesc *explain, const Text *d
     put(page, " - explained</title>\n<style>\n");
     for (size_t i = 0; i < sizeof styles / sizeof styles[0]; i++)
         put(page, styles[i]);
-    put(page, "</style>\n</head>\n<body>\n");
+    put(page, "</style>\n</head>\n<body");
+    if (explain->lesson) {
+        char lesson[32];
+        snprintf(lesson, sizeof lesson, " data-lesson=\"%d\"", explain->lesson->number);
+        put(page, lesson);
+    }
+    put(page, ">\n");
     put(page, page_html);
     put(page, "<script type=\"application/json\" id=\"data\">");
     file_writer_put(page, data->bytes, data->count);
@@ -73,8 +81,7 @@ static Result check_size(const ExplainDesc *explain, const ExplainRoom *room, si
                        1e-6 * (double)(size - room->scene - room->gl - room->truth));
 }
 
-static Result write(const ExplainDesc *explain, const Text *data, const char *dir,
-                    const char *file)
+static Result write(const ExplainDesc *explain, const Text *data, const char *dir, const char *file)
 {
     FileWriter page;
     char *path = pictures_path(dir, file);

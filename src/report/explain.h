@@ -15,7 +15,7 @@ typedef struct ExplainSide {
 
 /* A page that is a lesson: what src/web/lessons.js says stands beside it. */
 typedef struct ExplainLesson {
-    int number; /* from 1 */
+    int number;                /* from 1 */
     const char *const *titles; /* of all lessons */
     int count;
 } ExplainLesson;
@@ -31,8 +31,9 @@ typedef struct ExplainDesc {
 
 #define EXPLAIN_MAX_BYTES ((size_t)15000000)
 
-/* Writes dir/file; dir exists. *bytes, which may be NULL: the page's size. UNSUPPORTED where the page
- * would be larger than it may be: the message says what takes the room. Else NO_MEMORY and IO. */
+/* Writes dir/file; dir exists. *bytes, which may be NULL: the page's size. UNSUPPORTED where the
+ * page would be larger than it may be: the message says what takes the room. Else NO_MEMORY and IO.
+ */
 Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
                             size_t *bytes);
 
