@@ -9,8 +9,8 @@ const COURSE_WAIT_MS = 250; /* after the last change */
 
 /* ---- texts ---- */
 
-/* Of "plain, *a term at its definition*, [words](step=…&pixel=x,y)": text, terms, and buttons that
- * lead there, without taking back what the reader changed. */
+/* Of "plain, *a term at its definition*, [words](step=…&pixel=x,y)": text, terms, and links that
+ * lead there without taking back what the reader changed. */
 course.words = (text) => text.split(/(\*[^*]+\*|\[[^\]]+\]\([^)]*\))/).map((part) => {
     const link = part.match(/^\[([^\]]+)\]\(([^)]*)\)$/);
     if (link)
@@ -19,8 +19,9 @@ course.words = (text) => text.split(/(\*[^*]+\*|\[[^\]]+\]\([^)]*\))/).map((part
 });
 
 course.guide = (text, parts) => {
-    const button = app.element("button", { type: "button", className: "guide", textContent: text });
-    button.addEventListener("click", async () => {
+    const link = app.element("a", { href: `#${parts}`, textContent: text });
+    link.addEventListener("click", async (event) => {
+        event.preventDefault();
         const wanted = Object.fromEntries(parts);
         const focus = wanted.focus;
         delete wanted.focus;
@@ -32,7 +33,7 @@ course.guide = (text, parts) => {
         else
             document.getElementById(`view-${app.view}`).scrollIntoView({ block: "start" });
     });
-    return button;
+    return link;
 };
 
 /* A control, wherever it is folded away. */

@@ -88,12 +88,12 @@ LESSONS.push({
             return { right: false, text: ["This pixel has ", count, layers === 1 ? " layer" : " layers",
                 " of glass: with fewer than two, nothing can be in the wrong order."] };
         const color = (buffer, name) => ["(", ...[0, 1, 2].flatMap((k) => [k ? ", " : "",
-            course.value(buffer.data[at + k], `${name}.${"rgb"[k]}.code`, "count")]), ")"];
+            course.value(buffer.data[at + k], `${name}.${"rgb"[k]}`, "rgba8")]), ")"];
         if ([0, 1, 2].some((k) => painter.data[at + k] !== right.data[at + k]))
             return { right: false, text: ["This pixel has ", count, " layers, and the painter is " +
                 "wrong here: it shows ", ...color(painter, "painter.display"), ", in the right " +
                 "order they give ", ...color(right, "display"), "."] };
-        return { right: true, text: ["This pixel has ", count, " layers, and by both ways it is ",
+        return { right: true, text: ["This pixel has ", count, " layers, and both ways give ",
             ...color(right, "display"), ": here the order of the panes happens to be that of their " +
             "fragments. On the other side of a crossing it cannot be."] };
     },
@@ -102,16 +102,18 @@ LESSONS.push({
 /* ---- 3: peeling ---- */
 
 LESSONS.push({
-    start: "step=peel-0-depth&pixel=none",
+    start: "step=peel-0-depth&pixel=190,90",
     text: [
         "Graphics hardware does not sort. What it has is the *depth test*: for each pixel it keeps " +
         "a depth, and a fragment stays only if it is nearer than that. So drawing everything once, " +
         "in any order, leaves the nearest fragment of every pixel. That is [the first layer]" +
-        "(step=peel-0-depth): a teapot, a plane and a ball through each other, all transparent.",
+        "(step=peel-0-depth) of a teapot, a plane and a ball through each other, all transparent: its " +
+        "depth, light where it is near. The ring marks a pixel that has three layers.",
         "For the second layer, everything is drawn again, with one more test: a fragment is thrown " +
-        "away unless it is *behind the depth that the first layer has at this pixel*. This is the " +
+        "away unless it is behind the depth that the first layer has at this pixel, the " +
         "*previous depth*. Of what is left the depth test keeps the nearest: [the second layer]" +
-        "(step=peel-1-depth).",
+        "(step=peel-1-depth). Compare the numbers at the ring: its new depth is greater than the " +
+        "previous one, and no layer is between them.",
         "Why is the previous depth needed? Each pass draws the same surfaces again, and the " +
         "previous depth is all it knows of the passes before. Without it, every pass would find the " +
         "first layer again. [See what it throws away](step=peel-1-discard): orange is what was taken " +
@@ -244,7 +246,7 @@ LESSONS.push({
         "them. In the next peel the other is [not behind the previous depth](step=peel-1-compare), so " +
         "it is thrown away, and never seen again: one layer is lost.",
         "The opposite fault is as bad: if the same surface had a slightly other depth in the next " +
-        "pass, it would be peeled twice. So every pass must compute *the same bits*. That is why " +
+        "pass, it would be peeled twice. So every pass must compute the same bits. That is why " +
         "this project compares bits: ref, the renderer in this page, with gl, a graphics driver; and " +
         "[both with the truth](step=truth), which sorts exactly and computes in double precision.",
         "The accumulation has a *format* too. With 8 bits a channel (rgba8) every blend rounds to " +
