@@ -12,6 +12,7 @@
 #include "ref/truth/truth.h"
 #include "scene/generate.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,14 +121,39 @@ static size_t put_buffer(Text *head, const char *name, const Image *image, size_
 static void put_figures(Text *head, const Frame *frame)
 {
     text_print(head,
-               "{\"peels\":%d,\"geometry_passes\":%d,\"max_layers\":%u,\"fragments\":%llu,"
+               "\"peels\":%d,\"geometry_passes\":%d,\"max_layers\":%u,\"fragments\":%llu,"
                "\"lost_to_ties\":%llu,\"lost_to_pass_limit\":%llu,\"ties\":%llu,"
-               "\"residual_max\":%.17g,\"buffers\":[",
+               "\"residual_max\":%.17g,",
                frame->peels, frame->geometry_passes, frame->layers.max,
                (unsigned long long)frame->layers.fragments,
                (unsigned long long)frame->layers.lost_to_ties,
                (unsigned long long)frame->layers.lost_to_pass_limit,
                (unsigned long long)frame->layers.ties, frame->residual_max);
+}
+
+/* What the scene says that pages show. */
+static void put_scene(Text *head, const Scene *scene, const RenderDesc *desc)
+{
+    static const char *const modes[] = {"opaque", "mask", "blend"};
+    const Camera *camera = &scene->cameras[desc->camera];
+    text_print(head,
+               "\"ambient\":[%.9g,%.9g,%.9g],\"background\":[%.9g,%.9g,%.9g],"
+               "\"camera\":[%.17g,%.17g,%.17g],\"lights\":%zu,\"materials\":[",
+               (double)scene->ambient[0], (double)scene->ambient[1], (double)scene->ambient[2],
+               (double)scene->background[0], (double)scene->background[1],
+               (double)scene->background[2], camera->yfov, camera->near,
+               isfinite(camera->far) ? camera->far : -1.0, scene->light_count);
+    for (size_t i = 0; i < scene->material_count; i++) {
+        const Material *material = &scene->materials[i];
+        text_print(head,
+                   "%s{\"red\":%.9g,\"green\":%.9g,\"blue\":%.9g,\"alpha\":%.9g,"
+                   "\"roughness\":%.9g,\"metallic\":%.9g,\"occlusion\":%.9g,\"mode\":\"%s\"}",
+                   i ? "," : "", (double)material->base_color[0], (double)material->base_color[1],
+                   (double)material->base_color[2], (double)material->base_color[3],
+                   (double)material->roughness, (double)material->metallic,
+                   (double)material->occlusion, modes[material->alpha_mode]);
+    }
+    text_print(head, "],");
 }
 
 static void write_image(FILE *file, const Image *image)
@@ -137,24 +163,24 @@ static void write_image(FILE *file, const Image *image)
            file);
 }
 
-static void write(const Frame *frame, const TraceStore *store, const char *path)
+static void write(const Frame *frame, const TraceStore *store, Text *head, const char *path)
 {
     int count = store_count(store);
     Image *images = calloc((size_t)count + 1, sizeof *images);
-    Text head = {0};
     FILE *file = fopen(path, "wb");
     if (!file || !images)
         stop(path);
-    put_figures(&head, frame);
-    size_t at = put_buffer(&head, "final", &frame->final, 0);
-    at = put_buffer(&head, "display", &frame->display, at);
+    put_figures(head, frame);
+    text_print(head, "\"buffers\":[");
+    size_t at = put_buffer(head, "final", &frame->final, 0);
+    at = put_buffer(head, "display", &frame->display, at);
     for (int i = 0; i < count; i++) {
         if (store_image(store, i, &images[i]) != RESULT_OK)
             stop(store_buffer(store, i)->name);
         if (strcmp(store_buffer(store, i)->name, "display") != 0)
-            at = put_buffer(&head, store_buffer(store, i)->name, &images[i], at);
+            at = put_buffer(head, store_buffer(store, i)->name, &images[i], at);
     }
-    fprintf(file, "%s]}\n", head.bytes);
+    fprintf(file, "%s]}\n", head->bytes);
     write_image(file, &frame->final);
     write_image(file, &frame->display);
     for (int i = 0; i < count; i++) {
@@ -164,7 +190,6 @@ static void write(const Frame *frame, const TraceStore *store, const char *path)
     }
     if (ferror(file) || fclose(file) != 0)
         stop(path);
-    text_free(&head);
     free(images);
 }
 
@@ -189,7 +214,11 @@ int main(int argc, char **argv)
                           : pipeline_render(&scene, &desc, store_sink(store), &frame);
     if (result != RESULT_OK)
         stop(argv[2]);
-    write(&frame, store, argv[5]);
+    Text head = {0};
+    text_print(&head, "{");
+    put_scene(&head, &scene, &desc);
+    write(&frame, store, &head, argv[5]);
+    text_free(&head);
     frame_free(&frame);
     store_destroy(store);
     scene_free(&scene);
