@@ -40,6 +40,11 @@ static Result render_beside(const RenderOptions *options, const Scene *scene,
     return RESULT_OK;
 }
 
+static const char *name_of(const RenderOptions *options, const Scene *scene)
+{
+    return scene->name ? scene->name : options->scene_path;
+}
+
 /* gl first: where nobody says so, ref fuses as the driver does. */
 static Result render_all(const RenderOptions *options, const Scene *scene, RenderDesc *desc,
                          Sides *sides)
@@ -49,6 +54,8 @@ static Result render_all(const RenderOptions *options, const Scene *scene, Rende
         desc->unfused = !sides->frames[RENDERER_GL].fused;
     if (result == RESULT_OK)
         result = render(scene, desc, RENDERER_REF, sides);
+    if (result == RESULT_OK)
+        result = report_explain_check(name_of(options, scene), sides->traces[RENDERER_REF]);
     if (result == RESULT_OK)
         result = render_beside(options, scene, desc, RENDERER_TRUTH, sides);
     return result;
@@ -69,7 +76,7 @@ Result explain_page_write(const RenderOptions *options, const Scene *scene, cons
     RenderDesc desc = options->desc;
     Result result = render_all(options, scene, &desc, &sides);
     if (result == RESULT_OK) {
-        ExplainDesc explain = {.name = scene->name ? scene->name : options->scene_path,
+        ExplainDesc explain = {.name = name_of(options, scene),
                                .command = page->command,
                                .scene = scene,
                                .desc = desc,

@@ -93,6 +93,22 @@ static Result write(const ExplainDesc *explain, const Text *data, const char *di
     return file_writer_close(&page, true);
 }
 
+Result report_explain_check(const char *name, const TraceStore *store)
+{
+    double bytes = 0.0;
+    for (int i = 0; i < store_count(store); i++) {
+        const StoredBuffer *buffer = store_buffer(store, i);
+        bytes += (double)format_pixel_bytes(buffer->format) * buffer->width * buffer->height;
+    }
+    if (bytes <= (double)EXPLAIN_MAX_TRACE_BYTES)
+        return RESULT_OK;
+    return result_fail(RESULT_UNSUPPORTED,
+                       "%s: a page cannot keep the %.0f MB of this frame's %d buffers, expected at "
+                       "most %.0f: a smaller --size, or fewer --passes",
+                       name, 1e-6 * bytes, store_count(store),
+                       1e-6 * (double)EXPLAIN_MAX_TRACE_BYTES);
+}
+
 Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
                             size_t *bytes)
 {

@@ -29,10 +29,16 @@ typedef struct ExplainDesc {
     const ExplainLesson *lesson; /* NULL: none */
 } ExplainDesc;
 
-#define EXPLAIN_MAX_BYTES ((size_t)15000000)
+#define EXPLAIN_MAX_BYTES       ((size_t)15000000)
+#define EXPLAIN_MAX_TRACE_BYTES ((size_t)1000000000)
 
-/* Writes dir/file; dir exists. *bytes, which may be NULL: the page's size. UNSUPPORTED where the
- * page would be larger than it may be: the message says what takes the room. Else NO_MEMORY and IO.
+/* Whether a page can keep a frame with this trace of ref: twice, in the pipeline's memory and in
+ * its own. UNSUPPORTED and a message where it cannot. name: of the scene. */
+Result report_explain_check(const char *name, const TraceStore *ref);
+
+/* Writes dir/file; dir exists; ref has a frame and its trace. *bytes, which may be NULL: the page's
+ * size. UNSUPPORTED where the page would be larger than it may be: the message says what takes the
+ * room. Else NO_MEMORY and IO.
  */
 Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
                             size_t *bytes);

@@ -180,7 +180,7 @@ draw.ids = (buffer) => draw.picture(buffer, "Each triangle has a colour of its o
 draw.light = (buffer, legend = "Light gathered so far, as the display would show it.") =>
     draw.picture(buffer, legend,
         (at) => [0, 1, 2].map((k) => draw.display(draw.value(buffer, at + k))),
-        draw.describe(buffer, "rgba"));
+        draw.describe(buffer, /accum|layers/.test(buffer.name) ? "rgbT" : "rgba"));
 
 /* The same where nothing was blended left out. */
 draw.source = (buffer) => draw.picture(buffer, "As the display would show it on black.",
@@ -201,7 +201,8 @@ draw.linear = (buffer) => draw.picture(buffer, "Without tone mapping.",
 /* One channel in grey. */
 draw.grey = (buffer, channel, legend) => draw.picture(buffer, legend,
     (at) => Array(3).fill(255 * draw.value(buffer, at + channel)),
-    (x, y) => [draw.describe(buffer, "rgba")(x, y)[channel]]);
+    (x, y) => [draw.describe(buffer, buffer.channels < 4 ? ["value"]
+        : /source/.test(buffer.name) ? "rgb\u03b1" : "rgbT")(x, y)[channel]]);
 
 draw.bytes = (buffer) => draw.picture(buffer, "The image.",
     (at) => [0, 1, 2].map((k) => buffer.data[at + k]), draw.describe(buffer, "rgba"));
@@ -309,18 +310,24 @@ draw.slice = (rows) => {
         const i = app.pixel[1] * width + x;
         return draw.isEmpty(buffer, i) ? NaN : draw.distance(draw.value(buffer, i));
     }));
-    const [low, high] = draw.extremes(distances.flat());
+    /* Opaque surfaces may be far away: they are seen where they are near what is shown. */
+    const layers = distances.filter((_, row) => rows[row].buffer.name !== "opaque.depth");
+    const [low, high] = draw.extremes(layers.flat(), draw.distances());
     const rgba = new Uint8ClampedArray(4 * width * height);
-    const put = (x, y, color) => {
-        for (let dy = 0; dy < 2; dy++)
-            if (y + dy >= 0 && y + dy < height)
-                rgba.set([...color, 255], 4 * ((y + dy) * width + x));
+    const put = (x, y, end, color) => {
+        for (; y <= end; y++)
+            if (y >= 0 && y < height)
+                rgba.set([...color, 255], 4 * (y * width + x));
     };
     for (let y = 0; y < height; y += 4)
-        put(app.pixel[0], y, [150, 150, 150]);
-    rows.forEach(({ color }, row) => distances[row].forEach((z, x) => {
-        if (Number.isFinite(z))
-            put(x, Math.round((height - 6) * (high - z) / Math.max(high - low, 1e-9)) + 2, color);
+        put(app.pixel[0], y, y + 1, [150, 150, 150]);
+    const place = (z) => Math.round((height - 6) * (high - z) / Math.max(high - low, 1e-9)) + 2;
+    rows.forEach(({ color }, row) => distances[row].forEach((z, x, all) => {
+        if (!(z <= high && z >= low))
+            return;
+        const y = place(z), last = x > 0 ? place(all[x - 1]) : NaN; /* a steep surface is a line */
+        const from = Math.abs(last - y) < height / 16 ? last + Math.sign(y - last) : y;
+        put(x, Math.min(from, y), Math.max(from, y) + 1, color);
     }));
     const legend = rows.filter(({ text }) => text).map((row) => ({ ...row, pattern: "plain" }));
     return [{ title: `The pixel's row, from above; the eye is below`, picture: {

@@ -20,6 +20,7 @@ figure.make = (title, picture) => {
         figure.legend(picture.legend), pixel);
     if (picture.plain) {
         frame.classList.add("plain");
+        element.classList.add("wide");
         return element;
     }
     canvas.addEventListener("click", (event) => figure.choose(event, canvas));

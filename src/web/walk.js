@@ -228,7 +228,7 @@ walk.peelDepth = (k) => ({
 walk.peelSlice = (k) => {
     const layer = (peel, color, text) => ({ buffer: app.frame.buffer(`peel.${peel}.depth`), color, text });
     const rows = [{ buffer: app.frame.buffer("opaque.depth"), color: [1, 115, 178],
-                    text: "opaque depth" }];
+                    text: "opaque depth, where it is not far behind" }];
     for (let peel = 0; peel < k; peel++)
         rows.push(layer(peel, peel === k - 1 ? [120, 126, 136] : [188, 192, 198],
                         peel === k - 1 ? "previous depth" : ""));
@@ -274,6 +274,9 @@ walk.peelLight = (k) => app.frame.buffer(`peel.${k}.source`) && ({
     source: walk.RAPETTA,
 });
 
+/* Whether the opaque pass blends as the original program does: T is 2T after it and not used. */
+walk.seedBlend = (source) => source === "opaque.source" && app.settings["opaque-blend"] === 1;
+
 /* Blending a source under what the accumulation held: before and after are names of buffers;
  * before is null where it was just cleared. */
 walk.under = (source, before, after) => (pixel) => {
@@ -285,7 +288,10 @@ walk.under = (source, before, after) => (pixel) => {
     const color = (i) => buffer ? walk.number(source, pixel, i) : "source";
     return walk.lines(...["red", "green", "blue"].map((label, i) =>
         walk.formula`${label}: ${was(i)} + ${was(3)} \u00b7 ${color(i)} = ${walk.number(after, pixel, i)}`),
-        walk.formula`T: ${was(3)} \u00b7 (1 \u2212 ${color(3)}) = ${walk.number(after, pixel, 3)}`);
+        walk.seedBlend(source)
+            ? walk.formula`T: ${was(3)} + ${was(3)} \u00b7 ${color(3)} = ${walk.number(after, pixel, 3)
+                } (not used: nothing comes through)`
+            : walk.formula`T: ${was(3)} \u00b7 (1 \u2212 ${color(3)}) = ${walk.number(after, pixel, 3)}`);
 };
 
 walk.accums = (before, after, source) => [

@@ -57,11 +57,15 @@ walk.background = (lines, code) => walk.step({
     buffers: ["accum"],
     pictures: () => [...walk.show("accum", "Accumulated"), ...walk.show("final", "Final, linear light")],
     equation: (pixel) => walk.lines(...["red", "green", "blue"].map((label, i) =>
-        walk.formula`${label}: ${walk.number("accum", pixel, i)} + ${walk.number("accum", pixel, 3)
+        walk.formula`${label}: ${walk.number("accum", pixel, i)} + ${walk.throughAll(pixel)
             } \u00b7 ${app.numberElement(app.scene.background[i], "r32f", `scene.background.${"rgb"[i]}`)
             } = ${walk.number("final", pixel, i)}`),
-        walk.formula`coverage: 1 \u2212 ${walk.number("accum", pixel, 3)} = ${walk.number("final", pixel, 3)}`),
+        walk.formula`coverage: 1 \u2212 ${walk.throughAll(pixel)} = ${walk.number("final", pixel, 3)}`),
     source: walk.RAPETTA });
+
+/* The transmittance towards the background. */
+walk.throughAll = (pixel) => walk.seedBlend("opaque.source") && walk.hasFragment("opaque", pixel)
+    ? app.numberElement(0, "r32f", "accum.through") : walk.number("accum", pixel, 3);
 
 walk.display = (lines, code) => walk.step({
     id: "display", kind: "display", group: "Resolve", lines, code,
