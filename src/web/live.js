@@ -69,7 +69,7 @@ live.nextScale = (scale, times) => {
     const [, middle] = last.sort((a, b) => a - b);
     if (last.length < 3)
         return scale;
-    if (middle > LIVE_MS && scale > 1 / 8)
+    if (middle > LIVE_MS && scale > 1 / 4)
         return scale / 2;
     return middle < LIVE_MS / 5 && scale < 1 ? scale * 2 : scale;
 };

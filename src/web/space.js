@@ -150,7 +150,7 @@ space.fill = () => {
     space.showTable();
 };
 
-/* How wide cards can be, at most 0.6 of the stage, and what brings their middle to its middle:
+/* How wide cards can be, at most 0.8 of the stage, and what brings their middle to its middle:
  * {width, height, shift: [x, y]}. Lengths grow with the width, perspective included. */
 space.fit = (count, aspect, spread, yaw, tilt, [stageWidth, stageHeight]) => {
     const xs = [], ys = [], places = space.places(count, spread, 1);
@@ -162,7 +162,7 @@ space.fit = (count, aspect, spread, yaw, tilt, [stageWidth, stageHeight]) => {
                 ys.push(atY);
             }
     const least = [Math.min(...xs), Math.min(...ys)], most = [Math.max(...xs), Math.max(...ys)];
-    const width = Math.min(0.6 * stageWidth, 0.94 * stageWidth / (most[0] - least[0]),
+    const width = Math.min(0.8 * stageWidth, 0.94 * stageWidth / (most[0] - least[0]),
                            0.92 * stageHeight / (most[1] - least[1]));
     return { width, height: width / aspect,
              shift: [0, 1].map((i) => -(least[i] + most[i]) / 2 * width) };
@@ -188,7 +188,20 @@ space.place = () => {
     });
     for (const name of ["spread", "yaw", "tilt"])
         space[`${name}Update`]();
+    space.thinTitles(width, height);
     space.placeRay(width, height);
+};
+
+/* A title that would cover another is left out; the table names all. */
+space.thinTitles = (width, height) => {
+    let last = null;
+    for (const card of space.cards.filter((one) => !space.hidden.has(one.id))) {
+        const at = space.project([-width / 2, height / 2, card.z], space.yaw, space.tilt,
+                                 SPACE_EYE * width);
+        const covers = last && Math.abs(at[0] - last[0]) < 24 && Math.abs(at[1] - last[1]) < 20;
+        card.element.lastChild.hidden = Boolean(covers);
+        last = covers ? last : at;
+    }
 };
 
 space.placeRay = (width, height) => {

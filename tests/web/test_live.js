@@ -188,7 +188,7 @@ const tests = {
         assert.deepEqual(plain(space.places(1, 100, 100)), [0]);
         assert.deepEqual(plain(space.places(3, 100, 100)), [35, 0, -35]);
         for (const [count, yaw, tilt, stage] of [[1, 0, 0, [300, 200]], [10, -42, -12, [900, 500]],
-                                                 [48, 85, 30, [360, 240]], [5, 170, -90, [500, 900]]]) {
+                                                 [3, 0, 0, [2000, 200]], [48, 85, 30, [360, 240]], [5, 170, -90, [500, 900]]]) {
             const { width, height, shift } = space.fit(count, 16 / 9, 60, yaw, tilt, stage);
             for (const z of space.places(count, 60, width))
                 for (const x of [-0.5, 0.5])
