@@ -67,14 +67,16 @@ pixel.tests = (tests) => {
     return element;
 };
 
-pixel.row = ({ fragment, index }) => {
+/* A row, and the one below it that is folded. */
+pixel.rows = ({ fragment, index }) => {
     const row = app.element("tr", { className: pixel.isKept(fragment) ? "" : "lost" });
     const what = `fragment.${index}`, cell = (...inside) =>
         row.append(app.element("td", {}, ...inside));
     const primitive = app.element("data", { textContent: String(fragment.primitive) });
+    const more = app.element("tr", { hidden: true, className: "more" });
     primitive.dataset.value = String(fragment.primitive);
     primitive.dataset.what = `history.${what}.primitive`;
-    row.append(app.element("th", { scope: "row", textContent: pixel.fate(fragment) }));
+    row.append(app.element("th", { scope: "row" }, pixel.unfold(fragment, index, more)));
     cell(primitive);
     cell(`${fragment.instance_name || fragment.instance} / ` +
          `${fragment.material_name || fragment.material}, ${fragment.facing}`);
@@ -82,9 +84,29 @@ pixel.row = ({ fragment, index }) => {
     cell(pixel.number(fragment.distance, `${what}.distance`));
     cell(pixel.number(fragment.surface.base[3], `${what}.alpha`));
     cell(fragment.tests.length > 0 ? pixel.tests(fragment.tests) : "");
-    cell(pixel.details(fragment, index));
-    return row;
+    return [row, more];
 };
+
+/* The button that shows the folded row, which is filled when it is first seen. */
+pixel.unfold = (fragment, index, more) => {
+    const button = app.element("button", { type: "button", className: "fold",
+                                           textContent: pixel.fate(fragment) });
+    button.title = "Edges, surface and shading";
+    const show = (open) => {
+        more.hidden = !open;
+        button.setAttribute("aria-expanded", String(open));
+        open ? pixel.open.add(fragment.primitive) : pixel.open.delete(fragment.primitive);
+        if (open && more.children.length === 0)
+            more.append(app.element("td", { colSpan: pixel.HEADS.length },
+                app.element("div", { className: "inside" }, ...pixel.edges(fragment, index),
+                            pixel.surface(fragment, index), ...pixel.shading(fragment, index))));
+    };
+    button.addEventListener("click", () => show(more.hidden));
+    show(pixel.open.has(fragment.primitive));
+    return button;
+};
+
+pixel.HEADS = ["Fate", "Triangle", "Surface", "Depth", "Distance", "Alpha", "Passes"];
 
 pixel.table = (className, heads, rows, label) => {
     const head = app.element("tr", {}, ...heads.map((text) =>
@@ -104,31 +126,15 @@ pixel.fragments = () => {
         return part;
     }
     part.append(pixel.table("fragments",
-        ["Fate", "Triangle", "Surface", "Depth", "Distance", "Alpha", "Passes", "More"],
-        pixel.nearToFar().map(pixel.row), "Fragments, near to far"));
+        pixel.HEADS, pixel.nearToFar().flatMap(pixel.rows), "Fragments, near to far"));
     part.append(app.element("p", { className: "note", textContent:
         "Passes, one letter each: K kept; rejected by the o opaque depth, p previous depth, " +
-        "d depth test, a alpha test; b between the two depths of dual peeling." }));
+        "d depth test, a alpha test; b between the two depths of dual peeling. A fate opens the " +
+        "triangle's edges, surface and shading." }));
     return part;
 };
 
 /* ---- what is folded: edges, surface, shading ---- */
-
-pixel.details = (fragment, index) => {
-    const details = app.element("details", {});
-    const summary = app.element("summary", { textContent: "details" });
-    summary.setAttribute("aria-label", `details of triangle ${fragment.primitive}`);
-    details.append(summary);
-    const fill = () => {
-        if (details.open && details.children.length === 1)
-            details.append(...pixel.edges(fragment, index), pixel.surface(fragment, index),
-                           ...pixel.shading(fragment, index));
-        details.open ? pixel.open.add(fragment.primitive) : pixel.open.delete(fragment.primitive);
-    };
-    details.addEventListener("toggle", fill);
-    details.open = pixel.open.has(fragment.primitive);
-    return details;
-};
 
 pixel.edges = (fragment, index) => (fragment.edges ?? []).map(({ value, fill_rule }, i) => {
     const number = app.element("data", { className: "number", textContent: String(value) });
@@ -217,21 +223,33 @@ pixel.values = (texts, what) => {
     return cell;
 };
 
+/* Where a target is new, what it holds; then the step. */
+pixel.stepRows = (step, i, all) => {
+    const rows = [], first = all.findIndex(({ target }) => target === step.target) === i;
+    if (first)
+        rows.push(app.element("tr", {},
+            app.element("th", { scope: "row", textContent: `${step.target}, cleared` }),
+            app.element("td", {}), pixel.values(step.before, `blend.${i}.before`),
+            app.element("td", {})));
+    const equation = pixel.EQUATIONS[step.equation] ?? step.equation;
+    rows.push(app.element("tr", {},
+        app.element("th", { scope: "row" }, step.target === "accum" ? step.step
+                                            : `${step.step}, ${step.target}`,
+                    app.element("div", { className: "hex", textContent: equation })),
+        pixel.values(step.source, `blend.${i}.source`),
+        pixel.values(step.after, `blend.${i}.after`),
+        app.element("td", { textContent: pixel.sameAsGl(step) })));
+    return rows;
+};
+
 pixel.steps = () => {
     const { blend, accum_format: format } = pixel.history;
     const part = app.element("div", {}, app.element("h3", {}, "Blend steps ",
         app.element("span", { textContent: `into ${format}, numbers as stored` })));
-    const rows = blend.map((step, i) => app.element("tr", {},
-        app.element("th", { scope: "row", textContent: `${step.step}, ${step.target}` }),
-        app.element("td", { textContent: pixel.EQUATIONS[step.equation] ?? step.equation }),
-        pixel.values(step.source, `blend.${i}.source`),
-        pixel.values(step.before, `blend.${i}.before`),
-        pixel.values(step.after, `blend.${i}.after`),
-        app.element("td", { textContent: pixel.sameAsGl(step) })));
-    part.append(rows.length === 0
+    part.append(blend.length === 0
         ? app.element("p", { textContent: "Nothing was blended: the background is seen." })
-        : pixel.table("blend", ["Step", "Becomes", "Source r, g, b, \u03b1", "Before r, g, b, T",
-                                "After r, g, b, T", "gl"], rows, "Blend steps"));
+        : pixel.table("blend", ["Step", "Source r, g, b, \u03b1", "After r, g, b, T", "gl"],
+                      blend.flatMap(pixel.stepRows), "Blend steps"));
     if (pixel.history.note)
         part.append(app.element("p", { className: "note", textContent: pixel.history.note }));
     return part;
