@@ -23,19 +23,17 @@ ray.places = (distances) => {
     return places.map((place) => place / most);
 };
 
-ray.x = (place) => ray.LEFT + 34 + place * (ray.WIDTH - ray.LEFT - ray.RIGHT - 60);
+ray.x = (place) => ray.LEFT + 34 + place * (ray.WIDTH - ray.LEFT - ray.RIGHT - 76);
 
 /* Shape and text say what colour alone would. */
 ray.mark = (fragment, x) => {
     const kept = pixel.isKept(fragment), opaque = fragment.list === "opaque";
     const text = fragment.fate === "peeled" ? String(fragment.peel)
-               : fragment.fate === "seen" ? "opaque" : kept ? "\u2022" : "\u00d7";
+               : fragment.fate === "seen" ? "" : kept ? "\u2022" : "\u00d7";
     const shape = opaque
         ? ray.svg("rect", { x: x - 7, y: ray.AXIS - 22, width: 14, height: 44, rx: 2 })
         : ray.svg("circle", { cx: x, cy: ray.AXIS, r: 12 });
-    const label = opaque && kept
-        ? ray.svg("text", { x, y: ray.AXIS - 28, class: "name" }, "opaque")
-        : ray.svg("text", { x, y: ray.AXIS + 5, class: kept ? "inside" : "cross" }, text);
+    const label = ray.svg("text", { x, y: ray.AXIS + 5, class: kept ? "inside" : "cross" }, text);
     const title = ray.svg("title", {}, `triangle ${fragment.primitive}, ` +
         `${fragment.instance_name}: ${pixel.fate(fragment)}`);
     return ray.svg("g", { class: kept ? "kept" : "lost" }, title, shape, label);
@@ -73,6 +71,7 @@ ray.draw = () => {
     fragments.forEach((fragment, i) => {
         image.append(ray.mark(fragment, xs[i]));
         image.append(ray.svg("text", { x: xs[i], y: ray.AXIS - (i % 2 ? 46 : 32), class: "name" },
+                             (fragment.fate === "seen" ? "opaque, " : "") +
                              app.rounded(distances[i])));
     });
     part.append(image, app.element("figcaption", { className: "note", textContent:
