@@ -13,17 +13,17 @@
 extern const char report_style_css[], page_css[], page_live_css[], page_course_css[], page_html[],
     page_engine_js[], page_draw_js[], page_app_js[], page_number_js[], page_figure_js[],
     page_sides_js[], page_walk_js[], page_walk_end_js[], page_walk_others_js[], page_methods_js[],
-    page_steps_js[], page_pixel_js[], page_camera_js[], page_edits_js[], page_live_js[],
-    page_controls_js[], page_steer_js[], page_live_panel_js[], page_space_js[], page_lessons_js[],
-    page_course_js[];
+    page_steps_js[], page_ray_js[], page_pixel_js[], page_camera_js[], page_edits_js[],
+    page_live_js[], page_controls_js[], page_steer_js[], page_live_panel_js[], page_space_js[],
+    page_lessons_js[], page_course_js[];
 
 static const char *const styles[] = {report_style_css, page_css, page_live_css, page_course_css};
 static const char *const scripts[] = {
-    page_engine_js,   page_draw_js,  page_app_js,        page_number_js,      page_figure_js,
-    page_sides_js,    page_walk_js,  page_walk_end_js,   page_walk_others_js, page_methods_js,
-    page_steps_js,    page_pixel_js, page_camera_js,     page_edits_js,       page_live_js,
-    page_controls_js, page_steer_js, page_live_panel_js, page_space_js,       page_lessons_js,
-    page_course_js};
+    page_engine_js,  page_draw_js,     page_app_js,      page_number_js,      page_figure_js,
+    page_sides_js,   page_walk_js,     page_walk_end_js, page_walk_others_js, page_methods_js,
+    page_steps_js,   page_ray_js,      page_pixel_js,    page_camera_js,      page_edits_js,
+    page_live_js,    page_controls_js, page_steer_js,    page_live_panel_js,  page_space_js,
+    page_lessons_js, page_course_js};
 
 static void put(FileWriter *page, const char *text)
 {

@@ -10,9 +10,9 @@
 enum {
     NUMBER = 32,
     WIDE = 136, /* columns from which decimal and hexadecimal stand beside each other */
-    NAME = 10,
+    NAME = 9,
     NAME_WIDE = 34,
-    BEFORE_PASSES = 75 /* columns of a fragment's row, but for a wide name */
+    BEFORE_PASSES = 74 /* columns of a fragment's row, but for a wide name */
 };
 
 typedef enum Tone {
@@ -199,7 +199,7 @@ static void print_fragments(const Writer *writer, const History *history)
     }
     fprintf(writer->out,
             "F, B: front or back face. Passes: K kept; rejected by the o opaque depth,\n"
-            "p previous depth, d depth test, a alpha test; b between dual peeling's two depths.\n");
+            "p previous depth, d depth test, a alpha test; b between dual peeling's depths.\n");
     free(sorted);
 }
 

@@ -30,7 +30,18 @@ done
 awk '{ pixels += $1; steps += $3 } END { exit !(pixels >= 3000 && steps > pixels) }' replayed.txt ||
     fail "too little was replayed"
 
-# ---- gl and truth, by the contract's keys ----
+# ---- gl and truth ----
+for method in peel peel-id forward dual forward-dual linked-list painter weighted-average \
+    weighted-blended; do
+    for accum in rgba32f rgba8; do
+        "$peel" explain tutorial --size 96x54 --method $method --accum $accum \
+            $("$REPLAY" pixels 30 "$seed" 96 54) --json sides.json
+        "$REPLAY" sides sides.json > said.txt || fail "$method, $accum: $(tail -3 said.txt)"
+        seed=$((seed + 1))
+    done
+done
+
+# ---- the contract's keys ----
 "$peel" explain tutorial --size 64x36 --pixel 32,18 --json one.json
 for key in '"ref":{"pixel":\[32,18\]' '"gl":' '"truth":' '"fragments":\[{"primitive":' '"depth":"0x' \
     '"fate":"peeled","peel":0' '"blend":\[{"step":' '"source":\["0x' '"before":\["' '"after":\["' \

@@ -3,6 +3,7 @@
  *
  *   replay pixels COUNT SEED WIDTH HEIGHT       prints COUNT options --pixel X,Y
  *   replay check SCENE METHOD ACCUM WIDTH HEIGHT FILE
+ *   replay sides FILE                           gl's steps, which are ref's, and the truth's
  *
  * Exit code 1 and a line for each pixel that does not. */
 #include "base/random.h"
@@ -106,15 +107,15 @@ static int blend(const json_t *step, Target *target)
     return 0;
 }
 
-/* NULL, or what is wrong. */
-static const char *replay(const json_t *history, const PixelTrace *traced)
+/* NULL, or what is wrong. accum: the frame's; NULL where it is not known. */
+static const char *replay(const json_t *history, const PixelValue *accum)
 {
     Target targets[TARGETS] = {0};
     const json_t *steps = json_object_get(history, "blend"), *step;
-    const PixelValue *accum = pixel_trace_find(traced, "accum");
+    const char *format = json_string_value(json_object_get(history, "accum_format"));
     size_t i;
-    targets[0] = (Target){"accum", accum->format, {0}};
-    blend_clear(accum->format, targets[0].pixel);
+    targets[0] = (Target){"accum", find_format(format), {0}};
+    blend_clear(targets[0].format, targets[0].pixel);
     json_array_foreach(steps, i, step)
     {
         Target *target = target_of(targets, step);
@@ -127,8 +128,30 @@ static const char *replay(const json_t *history, const PixelTrace *traced)
     }
     if (!is_stored(&targets[0], json_object_get(history, "accum")))
         return "the steps do not give the printed accumulation";
-    if (memcmp(targets[0].pixel, accum->bytes, format_pixel_bytes(accum->format)) != 0)
+    if (accum && memcmp(targets[0].pixel, accum->bytes, format_pixel_bytes(accum->format)) != 0)
         return "the steps do not give the frame's accumulation";
+    return NULL;
+}
+
+/* In double precision, as the truth blends. */
+static const char *replay_truth(const json_t *history)
+{
+    const json_t *steps = json_object_get(history, "blend"), *step;
+    double sum[4] = {0.0, 0.0, 0.0, 1.0};
+    size_t i;
+    json_array_foreach(steps, i, step)
+    {
+        const json_t *source = json_object_get(step, "source");
+        for (size_t k = 0; k < 3; k++)
+            sum[k] += number(source, k) * sum[3];
+        sum[3] *= 1.0 - number(source, 3);
+        for (size_t k = 0; k < 4; k++)
+            if (sum[k] != number(json_object_get(step, "after"), k))
+                return "a step of the truth gives something else";
+    }
+    for (size_t k = 0; k < 4; k++)
+        if (sum[k] != number(json_object_get(history, "accum"), k))
+            return "the truth's steps do not give its accumulation";
     return NULL;
 }
 
@@ -172,7 +195,7 @@ static int check(char **arguments)
     json_array_foreach(all, i, one)
     {
         const json_t *history = json_object_get(one, "ref");
-        const char *wrong = replay(history, &traces[i]);
+        const char *wrong = replay(history, pixel_trace_find(&traces[i], "accum"));
         steps += json_array_size(json_object_get(history, "blend"));
         if (wrong)
             failed |=
@@ -187,12 +210,43 @@ static int check(char **arguments)
     return failed;
 }
 
+/* gl and truth of every history of a file. */
+static int check_sides(const char *path)
+{
+    json_error_t error;
+    json_t *all = json_load_file(path, 0, &error), *one;
+    int failed = 0;
+    size_t i;
+    op_enter();
+    json_array_foreach(all, i, one)
+    {
+        const json_t *ref = json_object_get(one, "ref"), *gl = json_object_get(one, "gl");
+        const char *wrong = replay(gl, NULL);
+        if (!wrong && (!json_equal(json_object_get(ref, "accum"), json_object_get(gl, "accum")) ||
+                       !json_equal(json_object_get(ref, "final"), json_object_get(gl, "final"))))
+            wrong = "gl ends elsewhere than ref";
+        if (!wrong && json_array_size(json_object_get(ref, "blend")) !=
+                          json_array_size(json_object_get(gl, "blend")))
+            wrong = "gl has other steps than ref";
+        if (!wrong)
+            wrong = replay_truth(json_object_get(one, "truth"));
+        if (wrong)
+            failed |= printf("history %zu: %s\n", i, wrong) > 0;
+    }
+    if (json_array_size(all) == 0)
+        return fail("no array of histories");
+    json_decref(all);
+    return failed;
+}
+
 int main(int argc, char **argv)
 {
     if (argc == 6 && strcmp(argv[1], "pixels") == 0)
         return print_pixels(argv + 2);
     if (argc == 8 && strcmp(argv[1], "check") == 0)
         return check(argv + 2);
-    fprintf(stderr, "replay: expected pixels or check\n");
+    if (argc == 3 && strcmp(argv[1], "sides") == 0)
+        return check_sides(argv[2]);
+    fprintf(stderr, "replay: expected pixels, check or sides\n");
     return 1;
 }
