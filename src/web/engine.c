@@ -5,6 +5,7 @@
 #include "frame/method.h"
 #include "frame/setting.h"
 #include "ref/pipeline/pipeline.h"
+#include "ref/pipeline/retrace.h"
 #include "scene/blob.h"
 
 #include <math.h>
@@ -30,7 +31,7 @@ typedef struct Engine {
     Frame frame;
     Traced *traced;
     size_t traced_count, traced_room;
-    Text scene_text, settings_text, frame_text;
+    Text scene_text, settings_text, frame_text, history_text;
 } Engine;
 
 static Engine engine;
@@ -357,4 +358,19 @@ EXPORT(engine_frame) const char *engine_frame(void)
     }
     text_print(text, "]}");
     return finish(text);
+}
+
+EXPORT(engine_history) const char *engine_history(int x, int y)
+{
+    Text *text = begin(&engine.history_text);
+    Retrace *retrace;
+    History history = {0};
+    Result result = retrace_open(&engine.scene, &engine.desc, &retrace);
+    if (result == RESULT_OK)
+        result = retrace_pixel(retrace, x, y, &history);
+    if (result == RESULT_OK)
+        history_json(&history, &engine.scene, text);
+    history_free(&history);
+    retrace_close(retrace);
+    return result == RESULT_OK ? finish(text) : NULL;
 }

@@ -45,6 +45,10 @@ int engine_set_camera(int camera, const double world[16], double yfov, double ne
 /* trace: keeps every buffer of every step, by the definition path; else only the images. */
 int engine_render(int width, int height, bool trace);
 
+/* What pixel (x, y), from the top left, of a frame of engine_render's last size went through, with
+ * the settings as they are now: frame/history.h's JSON. NULL on failure. */
+const char *engine_history(int x, int y);
+
 /* {"width", "height", "peels", "geometry_passes", "time_ms", "fused", "max_layers", "fragments",
  *  "lost_to_ties", "lost_to_pass_limit", "residual_max",
  *  "buffers": [{"name", "step", "format", "width", "height", "at": address}]}: final and display,

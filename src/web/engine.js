@@ -52,6 +52,14 @@ class Engine {
         return frame;
     }
 
+    /* What pixel (x, y), from the top left, went through: frame/history.h's JSON as an object. */
+    history(x, y) {
+        const at = this.exports.engine_history(x, y);
+        if (at === 0)
+            throw new Error(this.string(this.exports.engine_message()));
+        return this.json(at);
+    }
+
     /* ---- memory ---- */
 
     check(result) {
