@@ -224,7 +224,7 @@ void blend_eval_close(BlendEval *eval)
 /* value.number is set: its error from what is exact. */
 static void set_error(PixelFormat format, const Rational *exact, EvalValue *value)
 {
-    if (rational_equal(&value->number, exact))
+    if (rational_equal(&value->number, exact)) /* infinities and NaN, too */
         rational_set(0.0, &value->error);
     else
         rational_sub(&value->number, exact, &value->error);

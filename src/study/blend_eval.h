@@ -107,10 +107,17 @@ void blend_eval_close(BlendEval *eval);
  * the product too. */
 void blend_eval_source(const BlendColour *given, bool multiply, float out[4]);
 
+/* All layers with nothing kept but the stored pixel at the end. The arithmetic is not refused. */
+void blend_eval_all(const EvalDesc *desc, const Arithmetic *arithmetic, unsigned char pixel[16]);
+
+/* a less b in units in the last place that the format has at the number `at`. */
+double blend_eval_distance(const Rational *a, const Rational *b, const Rational *at,
+                           PixelFormat format);
+
 /* All layers under each other, front to back, and over each other, back to front. */
 typedef struct EvalSides {
     const char *refusal;                  /* NULL, or why there is nothing to compare; static */
-    Rational under[4], over[4], exact[4]; /* alpha is coverage everywhere */
+    Rational under[4], over[4], exact[4]; /* alpha as the equation has it */
     double under_ulp[4], over_ulp[4], between_ulp[4]; /* from exact; under less over */
 } EvalSides;
 

@@ -33,34 +33,45 @@ static void start_source(const EvalDesc *desc, float out[4])
     blend_colour_clear(&colour);
 }
 
-static void blend_side(const BlendEval *eval, const BlendEquation *equation, unsigned char *pixel)
+void blend_eval_all(const EvalDesc *desc, const Arithmetic *arithmetic, unsigned char pixel[16])
 {
-    const EvalDesc *desc = &eval->desc;
-    bool own = equation_id(equation) == equation_id(&desc->equation);
-    bool over = blend_eval_is_over(equation);
-    bool multiply = desc->multiply || (blend_eval_takes_straight(&desc->equation) &&
-                                       !blend_eval_takes_straight(equation));
+    bool over = blend_eval_is_over(&desc->equation);
     size_t layers = desc->layers->count;
     float source[4];
-    blend_eval_cleared(equation, source);
-    for (int c = 0; c < 4; c++) {
-        Rational number;
-        rational_init(&number);
+    Rational number;
+    rational_init(&number);
+    blend_eval_cleared(&desc->equation, source);
+    for (int c = 0; c < format_info(desc->format)->channels; c++) {
         rational_set((double)source[c], &number);
-        if (own && desc->start)
-            rational_copy(&desc->start->channels[c], &number);
-        arithmetic_put(desc->format, pixel, c, rational_store(&number, desc->format));
-        rational_clear(&number);
+        arithmetic_put(
+            desc->format, pixel, c,
+            rational_store(desc->start ? &desc->start->channels[c] : &number, desc->format));
     }
+    rational_clear(&number);
     for (size_t i = 0; i < layers; i++) {
-        blend_eval_source(&desc->layers->colours[over ? layers - 1 - i : i], multiply, source);
-        arithmetic_blend(&eval->arithmetic, equation, desc->format, 1, (const float(*)[4])source,
+        blend_eval_source(&desc->layers->colours[over ? layers - 1 - i : i], desc->multiply,
+                          source);
+        arithmetic_blend(arithmetic, &desc->equation, desc->format, 1, (const float(*)[4])source,
                          pixel);
     }
-    /* In front of the over-blend's layers, or behind the under-blend's: both come last. */
-    if (!own && desc->start) {
-        start_source(desc, source);
-        arithmetic_blend(&eval->arithmetic, equation, desc->format, 1, (const float(*)[4])source,
+}
+
+static void blend_side(const BlendEval *eval, const BlendEquation *equation,
+                       unsigned char pixel[16])
+{
+    EvalDesc side = eval->desc;
+    bool own = equation_id(equation) == equation_id(&side.equation);
+    if (!own) {
+        side.multiply |= blend_eval_takes_straight(&side.equation);
+        side.equation = *equation;
+        side.start = NULL;
+    }
+    blend_eval_all(&side, &eval->arithmetic, pixel);
+    /* In front of the over-blend's layers, or behind the under-blend's: the start comes last. */
+    if (!own && eval->desc.start) {
+        float source[4];
+        start_source(&eval->desc, source);
+        arithmetic_blend(&eval->arithmetic, equation, side.format, 1, (const float(*)[4])source,
                          pixel);
     }
 }
@@ -75,7 +86,8 @@ static void fetch_side(const EvalDesc *desc, const BlendEquation *equation,
         rational_one_minus(&out[3], &out[3]);
 }
 
-static double distance(const Rational *a, const Rational *b, const Rational *at, PixelFormat format)
+double blend_eval_distance(const Rational *a, const Rational *b, const Rational *at,
+                           PixelFormat format)
 {
     Rational difference;
     rational_init(&difference);
@@ -114,9 +126,10 @@ void blend_eval_sides(const BlendEval *eval, EvalSides *out)
         rational_copy(&eval->exact[c], &out->exact[c]);
     for (int c = 0; c < 4; c++) {
         const Rational *exact = &out->exact[c];
-        out->under_ulp[c] = distance(&out->under[c], exact, exact, desc->format);
-        out->over_ulp[c] = distance(&out->over[c], exact, exact, desc->format);
-        out->between_ulp[c] = distance(&out->under[c], &out->over[c], exact, desc->format);
+        out->under_ulp[c] = blend_eval_distance(&out->under[c], exact, exact, desc->format);
+        out->over_ulp[c] = blend_eval_distance(&out->over[c], exact, exact, desc->format);
+        out->between_ulp[c] =
+            blend_eval_distance(&out->under[c], &out->over[c], exact, desc->format);
     }
 }
 
