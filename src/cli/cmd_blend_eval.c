@@ -182,12 +182,15 @@ static const struct argp command_argp = {
     "sums, what is stored, and what each rounding adds, in decimal, as hexadecimal float and as "
     "exact fraction. A layer is red,green,blue,alpha: 0.5, 1/3, 128/255, 0x1p-1, inf, nan, or a "
     "code #rrggbbaa.\v"
-    "Half a red pane in front of a green one, in 8 bits, as they are and as the driver's:\n\n"
-    "  peel blend eval --format rgba8 '#ff000080' '#00ff0080'\n"
-    "  peel blend eval --format rgba8 --arithmetic exact,driver '#ff000080' '#00ff0080'\n\n"
-    "Thirds are no floats: four layers of them, a line each, and what adds up:\n\n"
-    "  peel blend eval --brief 1/3,1/3,1/3,1/3 1/3,1/3,1/3,1/3 1/3,1/3,1/3,1/3 1/3,1/3,1/3,1/3\n\n"
-    "Under and over give the same light by other roundings: the last table shows both.",
+    "Half a red pane in front of half a green one, in 8 bits:\n\n"
+    "  peel blend eval --format rgba8 '#ff000080' '#00ff0080'\n\n"
+    "Of the green, T*a*c = 127/255 * 128/255 = 63.749/255 arrives, which no code is: 64 is "
+    "stored, 0.251 codes too much. --arithmetic exact,driver shows beside it how a GL driver gets "
+    "there, --arithmetic all what other programs make of it.\n\n"
+    "Thirds, which are no floats, in four layers, a line each:\n\n"
+    "  peel blend eval --brief $(yes 1/3,1/3,1/3,1/3 | head -4)\n\n"
+    "It should let through 16/81, and stores 1.9 units in the last place (ULP) less. Under and "
+    "over give the same light by other roundings: the last table shows both.",
     NULL,
     NULL,
     NULL};

@@ -70,7 +70,9 @@ const char *blend_cells_error(double error, char out[TEXT_NUMBER])
 {
     if (isnan(error))
         return strcpy(out, "nan");
-    snprintf(out, TEXT_NUMBER, error == 0.0 ? "0" : "%+.3g", error);
+    if (error == 0.0)
+        return strcpy(out, "0");
+    snprintf(out, TEXT_NUMBER, "%+.*g", fabs(error) < 0.001 ? 2 : 3, error);
     return out;
 }
 
@@ -114,11 +116,21 @@ void blend_cells_errors(Grid *grid, const Rational *error, double ulp)
     grid_put(grid, style, "%s", blend_cells_error(rational_to_double(error), text));
 }
 
-void blend_cells_fraction(Grid *grid, int width, const Rational *number)
+void blend_cells_fraction(Grid *grid, int width, const Rational *number, PixelFormat format)
 {
+    uint32_t most = format_info(format)->unorm_max;
+    uint32_t code = most ? rational_store(number, format) : 0;
+    Rational stored;
+    rational_init(&stored);
+    if (most)
+        rational_fetch(code, format, &stored);
+    bool is_code = most && rational_equal(&stored, number) && code > 0 && code < most;
+    rational_clear(&stored);
     char *text = text_fraction(number);
     size_t length = strlen(text);
-    if (length > 3 * (size_t)width)
+    if (is_code) /* 63/255 says more than 21/85 */
+        grid_put(grid, GRID_PLAIN, "%u/%u", code, most);
+    else if (length > 3 * (size_t)width)
         grid_put(grid, GRID_FAINT, "(%zu characters)", length);
     else
         grid_put(grid, GRID_PLAIN, "%s", text);

@@ -13,7 +13,7 @@ const char *blend_cells_hex(const Rational *number, char out[TEXT_NUMBER]);
 const char *blend_cells_code(const Rational *number, PixelFormat format, char out[TEXT_NUMBER]);
 /* A colour as somebody wrote it: its fraction, where it is no float and that is short. */
 const char *blend_cells_given(const Rational *number, char out[TEXT_NUMBER]);
-/* With a sign and three digits; "0" for none. */
+/* With a sign and two or three digits; "0" for none. */
 const char *blend_cells_error(double error, char out[TEXT_NUMBER]);
 
 /* None, up to half a unit as rounding to nearest makes it, up to one, more. */
@@ -23,10 +23,11 @@ GridStyle blend_cells_style(double ulp);
 const char *blend_cells_stored(const Rational *number, PixelFormat format, char out[TEXT_NUMBER]);
 
 /* Cells of a row: decimal, hexadecimal, and the code of unorm formats; the error in ULP and as a
- * number; the fraction, or of one that is longer than some lines its length. */
+ * number; the fraction, over the greatest code where it is one, or of one
+ * that is longer than some lines its length. */
 void blend_cells_number(Grid *grid, GridStyle style, const Rational *number, PixelFormat format);
 void blend_cells_errors(Grid *grid, const Rational *error, double ulp);
-void blend_cells_fraction(Grid *grid, int width, const Rational *number);
+void blend_cells_fraction(Grid *grid, int width, const Rational *number, PixelFormat format);
 
 /* A table of those cells behind a label, with its headings. NULL without memory. */
 Grid *blend_cells_grid(PixelFormat format, int width, bool colour);

@@ -33,6 +33,21 @@ static void print_formula(const BlendPage *page, const TermsOf *terms, const cha
     fprintf(page->out, "%s%s\n", *means ? "  " : "", means);
 }
 
+/* Whether the format has the start's numbers. */
+static bool start_is_stored(const EvalDesc *desc)
+{
+    bool stored = true;
+    Rational number;
+    rational_init(&number);
+    for (int c = 0; c < format_info(desc->format)->channels; c++) {
+        const Rational *given = &desc->start->channels[c];
+        rational_fetch(rational_store(given, desc->format), desc->format, &number);
+        stored &= rational_equal(&number, given);
+    }
+    rational_clear(&number);
+    return stored;
+}
+
 static void print_start(const BlendPage *page)
 {
     const EvalDesc *desc = page->desc;
@@ -49,7 +64,10 @@ static void print_start(const BlendPage *page)
                           : text_float((double)cleared[c], text),
               page->out);
     }
-    fputs(desc->start ? "\n" : " (cleared)\n", page->out);
+    fputs(!desc->start            ? " (cleared)\n"
+          : start_is_stored(desc) ? "\n"
+                                  : " (rounded when it is stored)\n",
+          page->out);
 }
 
 static void print_head(const BlendPage *page)
@@ -60,7 +78,7 @@ static void print_head(const BlendPage *page)
     equation_print(&desc->equation, equation);
     int at = snprintf(title, sizeof title, "%s, %s, ", equation, format_info(desc->format)->name);
     if (page->count == 1)
-        snprintf(title + at, sizeof title - (size_t)at, "%s", page->arithmetics[0].name);
+        snprintf(title + at, sizeof title - (size_t)at, "%s arithmetic", page->arithmetics[0].name);
     else
         snprintf(title + at, sizeof title - (size_t)at, "%zu arithmetics", page->count);
     grid_style(page->view->colour, GRID_STRONG, title, page->out);
@@ -147,17 +165,31 @@ static void add_channel(const BlendPage *page, const EvalLayer *layer, int c, Gr
         grid_put(grid, style, "  %s", terms->steps[step]);
         blend_cells_number(grid, style, &value->number, desc->format);
         blend_cells_errors(grid, &value->error, value->ulp);
-        blend_cells_fraction(grid, page->view->width, &value->number);
+        blend_cells_fraction(grid, page->view->width, &value->number, desc->format);
     }
     grid_row(grid);
     grid_put(grid, GRID_PLAIN, "  %s ideal", terms->target);
     blend_cells_number(grid, GRID_PLAIN, &channel->exact, desc->format);
     blend_cells_errors(grid, &channel->off, channel->off_ulp);
-    blend_cells_fraction(grid, page->view->width, &channel->exact);
+    blend_cells_fraction(grid, page->view->width, &channel->exact, desc->format);
 }
 
-static Result print_layer(const BlendPage *page, const EvalLayer *layer, Grid *grid)
+/* What the layers done let through, where no channel says so. */
+static void add_transmittance(const BlendPage *page, const BlendEval *eval, Grid *grid)
 {
+    if (blend_eval_alpha(&page->desc->equation) != EVAL_COVERAGE)
+        return;
+    grid_row(grid);
+    grid_put(grid, GRID_PLAIN, "  let through");
+    blend_cells_number(grid, GRID_PLAIN, &eval->see_through, page->desc->format);
+    grid_put(grid, GRID_PLAIN, "%s", ""); /* exact by definition */
+    grid_put(grid, GRID_PLAIN, "%s", "");
+    blend_cells_fraction(grid, page->view->width, &eval->see_through, page->desc->format);
+}
+
+static Result print_layer(const BlendPage *page, const BlendEval *eval, Grid *grid)
+{
+    const EvalLayer *layer = &eval->layer;
     int channels = blend_page_channels(page);
     blend_page_layer(page, layer);
     blend_cells_headings(grid, page->desc->format, "step", "error", "fraction");
@@ -169,6 +201,7 @@ static Result print_layer(const BlendPage *page, const EvalLayer *layer, Grid *g
         grid_line(grid, GRID_PLAIN, "  %s", names);
         add_channel(page, layer, c, grid);
     }
+    add_transmittance(page, eval, grid);
     return grid_print(grid, page->out);
 }
 
@@ -178,7 +211,7 @@ static Result print_layers(const BlendPage *page, BlendEval *eval)
     Grid *grid = blend_cells_grid(page->desc->format, view->width, view->colour);
     Result result = grid ? RESULT_OK : blend_page_no_memory();
     while (result == RESULT_OK && blend_eval_next(eval))
-        result = print_layer(page, &eval->layer, grid);
+        result = print_layer(page, eval, grid);
     grid_free(grid);
     return result;
 }

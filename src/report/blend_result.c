@@ -19,7 +19,7 @@ static Result print_channels(const BlendPage *page, const BlendEval *eval)
         grid_put(grid, GRID_PLAIN, "%s", blend_page_channel(c));
         blend_cells_number(grid, GRID_STRONG, &channel->steps[EVAL_STORED].number, format);
         blend_cells_errors(grid, &channel->off, channel->off_ulp);
-        blend_cells_fraction(grid, page->view->width, &channel->exact);
+        blend_cells_fraction(grid, page->view->width, &channel->exact, format);
     }
     Result result = grid_print(grid, page->out);
     grid_free(grid);
@@ -30,10 +30,10 @@ static void print_totals(const BlendPage *page, const BlendEval *eval)
 {
     const EvalTotals *totals = &eval->totals;
     const char *unit = format_info(page->desc->format)->kind == KIND_UNORM ? "codes" : "ULP";
-    fprintf(page->out, "  %llu numbers were rounded on the way",
-            (unsigned long long)totals->rounded);
+    fprintf(page->out, "  %llu rounding%s", (unsigned long long)totals->rounded,
+            totals->rounded == 1 ? "" : "s");
     if (totals->rounded)
-        fprintf(page->out, ", one by %.3g %s: layer %zu, %s, %s", totals->largest_ulp, unit,
+        fprintf(page->out, ", at most %.3g %s: layer %zu, %s, %s", totals->largest_ulp, unit,
                 totals->layer + 1, blend_page_channel(totals->channel),
                 blend_terms_of(&page->terms, totals->channel)->steps[totals->step]);
     fputc('\n', page->out);
@@ -73,7 +73,7 @@ static Result print_sides(const BlendPage *page, const BlendEval *eval)
     Result result = RESULT_OK;
     bool unorm = format_info(page->desc->format)->kind == KIND_UNORM;
     if (sides.refusal) {
-        fprintf(page->out, "  under beside over: %s\n", sides.refusal);
+        fprintf(page->out, "  (under and over side by side: %s)\n", sides.refusal);
     } else {
         Grid *grid = grid_new("lrrrrrr", page->view->width, page->view->colour);
         fprintf(page->out,

@@ -69,9 +69,23 @@ static void sum_text(const ChannelEquation *part, const char *s, const char *d,
         snprintf(out, TERMS_STEP, "%s + %s", s, d);
 }
 
-static void channel_terms(const EvalDesc *desc, int channel, const Letters *letters, TermsOf *out)
+/* A channel's factors; a format without alpha reads 1 for it. */
+static ChannelEquation part_of(const EvalDesc *desc, int channel)
 {
     ChannelEquation part = channel_equation(&desc->equation, channel);
+    BlendFactor *factors[2] = {&part.source, &part.destination};
+    for (int i = 0; i < 2 && format_info(desc->format)->channels < 4; i++) {
+        if (*factors[i] == FACTOR_DST_ALPHA)
+            *factors[i] = FACTOR_ONE;
+        if (*factors[i] == FACTOR_ONE_MINUS_DST_ALPHA)
+            *factors[i] = FACTOR_ZERO;
+    }
+    return part;
+}
+
+static void channel_terms(const EvalDesc *desc, int channel, const Letters *letters, TermsOf *out)
+{
+    ChannelEquation part = part_of(desc, channel);
     bool unorm = format_info(desc->format)->kind == KIND_UNORM;
     bool factors = part.func != BLEND_FUNC_MIN && part.func != BLEND_FUNC_MAX;
     char source_factor[TERMS_PART] = "1", destination_factor[TERMS_PART] = "1";
@@ -101,7 +115,9 @@ static void meanings(const EvalDesc *desc, BlendTerms *out)
 {
     EquationId id = equation_id(&desc->equation);
     out->colour_means = out->alpha_means = "";
-    if (id == EQUATION_UNDER) {
+    if (format_info(desc->format)->channels < 4)
+        out->colour_means = "the format stores no alpha: where it is read, it is 1";
+    else if (id == EQUATION_UNDER) {
         out->colour_means = "the layer's light, dimmed by the layers in front";
         out->alpha_means = "transmittance: what the layers let through";
     } else if (blend_eval_is_over(&desc->equation)) {
@@ -163,7 +179,7 @@ static bool is_own(BlendFactor factor, bool alpha, EvalStep step)
 
 bool blend_terms_says(const EvalDesc *desc, const EvalLayer *layer, int channel, EvalStep step)
 {
-    ChannelEquation part = channel_equation(&desc->equation, channel);
+    ChannelEquation part = part_of(desc, channel);
     const EvalChannel *values = &layer->channels[channel];
     const EvalValue *value = &values->steps[step];
     bool factors = part.func != BLEND_FUNC_MIN && part.func != BLEND_FUNC_MAX;
