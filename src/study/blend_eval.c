@@ -75,7 +75,8 @@ static void exact_factor(BlendFactor factor, bool alpha, const Operands *o, Rati
             return;
         }
         rational_one_minus(o->destination_alpha, out);
-        rational_min(o->source_alpha, out, out);
+        if (o->source_alpha->kind != RATIONAL_NAN && out->kind != RATIONAL_NAN)
+            rational_min(o->source_alpha, out, out); /* as arithmetic_factor */
         return;
     case FACTOR_SRC_COLOR:
     case FACTOR_DST_COLOR:
