@@ -98,8 +98,7 @@ static void print_legend(const BlendPage *page)
     const FormatInfo *info = format_info(page->desc->format);
     if (info->kind == KIND_UNORM)
         fprintf(page->out,
-                "  codes, error: what rounding added in that step, in codes (1/%u) and as "
-                "a number\n",
+                "  codes, error: what rounding added in the step, in 1/%u and as a number\n",
                 info->unorm_max);
     else
         fprintf(page->out,
@@ -265,10 +264,11 @@ static Result print_brief(const BlendPage *page, BlendEval *eval)
     Grid *grid = grid_new(aligns[blend_page_channels(page)], page->view->width, page->view->colour);
     if (!grid)
         return blend_page_no_memory();
-    fprintf(page->out,
-            "\nStored after each layer%s; off: the %s of the channel farthest from the same blend\n"
-            "  without any rounding; let through: the exact product of 1 - a\n",
-            unorm ? ", in codes" : "", unorm ? "codes" : "ULP");
+    fprintf(
+        page->out,
+        "\nStored after each layer%s; off: %s of the channel farthest from the ideal, the same\n"
+        "  blend without any rounding; let through: the exact product of 1 - a\n",
+        unorm ? ", in codes" : "", unorm ? "codes" : "ULP");
     add_brief_headings(page, grid);
     while (blend_eval_next(eval))
         add_brief(eval, grid);

@@ -198,10 +198,13 @@ static Result print_results(const BlendPage *page)
         ;
     Grid *grid = grid_new(aligns[blend_page_channels(page)], page->view->width, page->view->colour);
     fprintf(page->out,
-            "\nResults%s; ideal: the colours as written, without any rounding; off: the channel\n"
-            "  farthest from that; under-over: under each other, less over each other\n",
+            "\nResults%s; ideal: the colours as written, without any rounding;\n"
+            "  off: the channel farthest from that; under-over: the layers under each other,\n"
+            "  less over each other\n",
             unorm ? " in codes" : "; differences in ULP");
-    if (grid) {
+    differences in ULP ");
+        if (grid)
+    {
         grid_row(grid);
         grid_put(grid, GRID_HEAD, "arithmetic");
         for (int c = 0; c < blend_page_channels(page); c++)

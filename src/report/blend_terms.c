@@ -150,8 +150,8 @@ void blend_terms(const EvalDesc *desc, BlendTerms *out)
     alpha.destination = transmits ? "T" : "A";
     channel_terms(desc, 0, &colour, &out->colour);
     channel_terms(desc, 3, &alpha, &out->alpha);
-    out->sources = desc->multiply ? "c, a: a layer's straight colour and alpha; the shader puts "
-                                    "out a*c and a, floats"
+    out->sources = desc->multiply ? "c, a: a layer's straight colour and alpha; the shader "
+                                    "puts out a*c and a"
                    : straight     ? "c, a: a layer's colour (straight) and alpha, floats"
                                   : "s, a: a layer's colour (premultiplied) and alpha, floats";
     meanings(desc, out);
