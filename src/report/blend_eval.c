@@ -264,11 +264,10 @@ static Result print_brief(const BlendPage *page, BlendEval *eval)
     Grid *grid = grid_new(aligns[blend_page_channels(page)], page->view->width, page->view->colour);
     if (!grid)
         return blend_page_no_memory();
-    fprintf(
-        page->out,
-        "\nStored after each layer%s; off: %s of the channel farthest from the ideal, the same\n"
-        "  blend without any rounding; let through: the exact product of 1 - a\n",
-        unorm ? ", in codes" : "", unorm ? "codes" : "ULP");
+    fprintf(page->out,
+            "\nStored after each layer%s; off: %s of the channel farthest from the ideal,\n"
+            "  the same blend without any rounding; let through: the product of 1 - a\n",
+            unorm ? ", in codes" : "", unorm ? "codes" : "ULP");
     add_brief_headings(page, grid);
     while (blend_eval_next(eval))
         add_brief(eval, grid);

@@ -201,10 +201,8 @@ static Result print_results(const BlendPage *page)
             "\nResults%s; ideal: the colours as written, without any rounding;\n"
             "  off: the channel farthest from that; under-over: the layers under each other,\n"
             "  less over each other\n",
-            unorm ? " in codes" : "; differences in ULP");
-    differences in ULP ");
-        if (grid)
-    {
+            unorm ? " in codes" : ", differences in ULP");
+    if (grid) {
         grid_row(grid);
         grid_put(grid, GRID_HEAD, "arithmetic");
         for (int c = 0; c < blend_page_channels(page); c++)
