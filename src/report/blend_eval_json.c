@@ -90,9 +90,8 @@ static json_t *layer_object(Document *json, const BlendEval *eval, const BlendTe
     json_t *channels = json_object();
     bool last = eval->done == desc->layers->count;
     for (int c = 0; c < 4; c++) {
-        char hex[TEXT_NUMBER];
         document_append(json, given, number_object(json, &layer->given->channels[c], SIZE_MAX));
-        document_append(json, source, json_string(text_hex((double)layer->source[c], hex)));
+        document_append(json, source, document_hex((double)layer->source[c]));
     }
     for (int c = 0; c < format_info(desc->format)->channels; c++)
         document_put(
