@@ -136,7 +136,7 @@ holds 'fractions' "Fraction(layers[1]['channels']['green']['exact']['fraction'])
     == Fraction(127 * 128, 255 * 255)"
 holds 'errors are differences' "all(Fraction(c['steps']['stored']['fraction'])
     - Fraction(c['exact']['fraction']) == Fraction(c['off_fraction'])
-    for l in layers for c in l['channels'].values())"
+    for a in d['arithmetics'] for l in a['layers'] for c in l['channels'].values())"
 holds 'bits' "layers[1]['channels']['green']['code'] == 64
     and layers[1]['channels']['green']['bits'] == '0x40'"
 holds 'both sides' "d['arithmetics'][0]['under_over']['green']['under']['fraction'] == '64/255'"

@@ -86,7 +86,7 @@ START_TEST(files_of_layers)
     char path[] = "/tmp/peel-layers-XXXXXX";
     BlendLayers layers = {0};
     close(mkstemp(path));
-    write_text(path, "# a comment\n\n1,0,0,1\r\n  #00ff0080  \n0.5 0.5 0.5 0.5");
+    write_text(path, "# a comment\n\n1,0,0,1\r\n  #00ff0080 \r\n0.5 0.5 0.5 0.5");
     ck_assert_int_eq(blend_layers_load(path, &layers), RESULT_OK);
     ck_assert_uint_eq(layers.count, 3);
     blend_layers_free(&layers);
@@ -192,6 +192,32 @@ START_TEST(floats_by_hand)
     check_number(&eval.exact[1], "1/6");
     check_number(&eval.exact[3], "1/3");
     check_number(&eval.layer.channels[3].off, "-1/50331648"); /* 5592405/2^24 − 1/3 */
+    blend_eval_close(&eval);
+    blend_layers_free(&layers);
+}
+END_TEST
+
+/* A fused operation adds the product of 48 digits: shown whole, and rounded once. */
+START_TEST(fused_by_hand)
+{
+    static const char *const texts[] = {"0,0,0,0.1", "0,0,0,0.1"};
+    BlendLayers layers = layers_of(2, texts);
+    EvalDesc desc = {.equation = equation_info(EQUATION_UNDER)->equation,
+                     .format = FORMAT_RGBA32F,
+                     .layers = &layers};
+    Arithmetic fused = arithmetic_of("fused");
+    BlendEval eval;
+    ck_assert_int_eq(blend_eval_open(&desc, &fused, &eval), RESULT_OK);
+    while (blend_eval_next(&eval))
+        ;
+    const EvalValue *alpha = eval.layer.channels[3].steps;
+    check_number(&alpha[EVAL_DESTINATION].number, "7549747/2^23");
+    check_number(&alpha[EVAL_DESTINATION_FACTOR].number, "7549747/2^23");
+    check_number(&alpha[EVAL_DESTINATION_PRODUCT].number, "56998679764009/2^46");
+    check_number(&alpha[EVAL_DESTINATION_PRODUCT].error, "0");
+    check_number(&alpha[EVAL_SUM].number, "1698693/2^21");
+    ck_assert_double_gt(fabs(alpha[EVAL_SUM].ulp), 0.0);
+    ck_assert_double_le(fabs(alpha[EVAL_SUM].ulp), 0.5);
     blend_eval_close(&eval);
     blend_layers_free(&layers);
 }
@@ -430,6 +456,7 @@ int main(void)
     tcase_set_timeout(blends, 60);
     tcase_add_test(blends, eight_bits_by_hand);
     tcase_add_test(blends, floats_by_hand);
+    tcase_add_test(blends, fused_by_hand);
     tcase_add_test(blends, specials_by_hand);
     tcase_add_test(blends, random_blends_add_up);
     tcase_add_test(blends, ideal_is_the_same_both_ways);
