@@ -91,7 +91,7 @@ static error_t add_arithmetic(const char *name, EvalCommand *command)
         return options_error("--arithmetic %s: expected at most %d", name, ARITHMETICS_MOST);
     EvalNamed *named = &command->named[command->named_count];
     if (arithmetic_parse(name, &named->arithmetic) != RESULT_OK)
-        return options_error("--arithmetic: %s", result_message());
+        return options_error("--%s", result_message());
     for (size_t i = 0; i < arithmetic_count(); i++)
         if (strcmp(name, arithmetic_info(i)->name) == 0)
             named->wrong = arithmetic_info(i)->wrong;
@@ -145,7 +145,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_EQUATION:
         return equation_parse(argument, &command->equation) == RESULT_OK
                    ? 0
-                   : options_error("--equation: %s", result_message());
+                   : options_error("--%s", result_message());
     case KEY_FORMAT:
         return parse_format(argument, &command->format);
     case KEY_ARITHMETIC:

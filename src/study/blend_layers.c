@@ -131,6 +131,23 @@ static Result make_room(BlendLayers *layers)
     return RESULT_OK;
 }
 
+static size_t number_bits(const Rational *number)
+{
+    return mpz_sizeinbase(mpq_numref(number->value), 2) +
+           mpz_sizeinbase(mpq_denref(number->value), 2);
+}
+
+/* By how much a layer lengthens the fraction: its longest colour's product with its alpha. */
+static size_t colour_bits(const BlendColour *colour)
+{
+    size_t most = 0;
+    for (int c = 0; c < 3; c++) {
+        size_t bits = number_bits(&colour->channels[c]);
+        most = bits > most ? bits : most;
+    }
+    return most + number_bits(&colour->channels[3]);
+}
+
 Result blend_layers_add(const char *place, const char *text, size_t length, BlendLayers *layers)
 {
     if (layers->count == BLEND_LAYERS_MOST)
@@ -141,7 +158,14 @@ Result blend_layers_add(const char *place, const char *text, size_t length, Blen
         return result;
     BlendColour *colour = &layers->colours[layers->count++]; /* freed with the others */
     blend_colour_init(colour);
-    return blend_colour_read(place, text, length, 4, colour);
+    result = blend_colour_read(place, text, length, 4, colour);
+    layers->bits += colour_bits(colour);
+    if (result == RESULT_OK && layers->bits > BLEND_LAYERS_BITS)
+        result = result_fail(RESULT_BAD_INPUT,
+                             "%s: too many digits for an exact result: expected numbers of "
+                             "together %d bits, this layer's end at %zu",
+                             place, BLEND_LAYERS_BITS, layers->bits);
+    return result;
 }
 
 static bool is_comment(const char *line, size_t length)

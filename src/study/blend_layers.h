@@ -8,7 +8,8 @@
 #include <stddef.h>
 
 enum {
-    BLEND_LAYERS_MOST = 4096
+    BLEND_LAYERS_MOST = 4096,
+    BLEND_LAYERS_BITS = 1 << 20 /* of the fraction that is the exact result: a minute or so */
 };
 
 /* Red, green, blue, alpha, exactly as written. */
@@ -20,6 +21,7 @@ typedef struct BlendColour {
 typedef struct BlendLayers {
     BlendColour *colours;
     size_t count, room;
+    size_t bits; /* what the exact result may need */
 } BlendLayers;
 
 void blend_colour_init(BlendColour *out);
@@ -32,7 +34,8 @@ void blend_colour_clear(BlendColour *colour);
 Result blend_colour_read(const char *place, const char *text, size_t length, int least,
                          BlendColour *out);
 
-/* Appends a colour. BAD_INPUT where it is none, or one more than BLEND_LAYERS_MOST. */
+/* Appends a colour. BAD_INPUT where it is none, or where the layers are more than BLEND_LAYERS_MOST
+ * or have too many digits. */
 Result blend_layers_add(const char *place, const char *text, size_t length, BlendLayers *layers);
 
 /* Appends those of a file, "-" for standard input: a line each, numbers between commas or blanks;

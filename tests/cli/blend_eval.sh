@@ -177,6 +177,8 @@ refused 'a 0 byte' 'zero.txt:2: blue: .*0 byte' --layers zero.txt
 printf '1,0,0,1\n\n1,0,0\n' >short.txt
 refused 'a short line' "short.txt:3: '1,0,0'" --layers short.txt
 refused 'too many' 'many.txt:4096: one layer too many' 1,0,0,1 --layers many.txt
+yes '1e-9999,0,0,1/3' | head -100 >digits.txt
+refused 'digits' 'digits.txt:32: too many digits' --layers digits.txt
 refused 'JSON nowhere' 'nowhere' --json nowhere/e.json 1,0,0,1
 exits 4 'a full disk' sh -c "'$peel' blend eval 1,0,0,1 >/dev/full"
 
