@@ -167,6 +167,37 @@ Result arithmetic_parse(const char *text, Arithmetic *out)
     return RESULT_OK;
 }
 
+static int get_field(const Arithmetic *arithmetic, Field field)
+{
+    const int values[FIELD_MISTAKE] = {arithmetic->precision, arithmetic->rounding,
+                                       arithmetic->store,     arithmetic->product,
+                                       arithmetic->fused,     arithmetic->flush,
+                                       arithmetic->source_stored};
+    return values[field];
+}
+
+static void append(char out[ARITHMETIC_TEXT], const char *key, const char *value)
+{
+    size_t length = strlen(out);
+    snprintf(out + length, ARITHMETIC_TEXT - length, "%s%s%s%s", length ? "," : "", key,
+             *key ? "=" : "", value);
+}
+
+void arithmetic_print(const Arithmetic *arithmetic, char out[ARITHMETIC_TEXT])
+{
+    out[0] = '\0';
+    if (arithmetic->kind != ARITHMETIC_STEPS)
+        append(out, "", arithmetic->kind == ARITHMETIC_EXACT ? "exact" : "driver");
+    for (int i = 0; i < FIELD_MISTAKE && arithmetic->kind == ARITHMETIC_STEPS; i++)
+        if (get_field(arithmetic, (Field)i))
+            append(out, fields[i].key, fields[i].values[get_field(arithmetic, (Field)i)]);
+    for (int i = 0; mistakes[i]; i++)
+        if (arithmetic->mistakes >> i & 1)
+            append(out, fields[FIELD_MISTAKE].key, mistakes[i]);
+    if (!out[0])
+        append(out, fields[FIELD_PRECISION].key, precisions[0]);
+}
+
 typedef void DriverBlend(PixelFormat format, const float source[4], void *pixel);
 
 static DriverBlend *driver_blend(const BlendEquation *equation)

@@ -83,6 +83,14 @@ const ArithmeticInfo *arithmetic_info(size_t i);
  * a message otherwise. */
 Result arithmetic_parse(const char *text, Arithmetic *out);
 
+/* The fields as arithmetic_parse reads them, of ARITHMETIC_STEPS and without those that are as the
+ * default: "precision=half,store=truncate"; "exact" or "driver" of the other kinds, with mistakes
+ * behind. out: room for ARITHMETIC_TEXT bytes. */
+enum {
+    ARITHMETIC_TEXT = 192
+};
+void arithmetic_print(const Arithmetic *arithmetic, char out[ARITHMETIC_TEXT]);
+
 /* Whether this arithmetic is defined for the format and equation: codes are of unorm formats; the
  * driver's is known for the equations that were measured. NULL, or why not in one line (static). */
 const char *arithmetic_refuses(const Arithmetic *arithmetic, const BlendEquation *equation,
