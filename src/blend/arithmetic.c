@@ -19,7 +19,7 @@ static const ArithmeticInfo infos[] = {
      "the exact result of the stored operands, rounded once to nearest even",
      {.kind = ARITHMETIC_EXACT},
      false},
-    {"driver", "Mesa llvmpipe's, as measured", {.kind = ARITHMETIC_DRIVER}, false},
+    {"driver", "Mesa llvmpipe's, as measured", {.kind = ARITHMETIC_DRIVER, .fused = true}, false},
     {"separate", "float operations, each rounded to nearest, stored to nearest",
      STEPS(.precision = PRECISION_FLOAT), false},
     {"separate-truncated", "float operations, each rounded to nearest, stored toward zero",
@@ -169,10 +169,9 @@ Result arithmetic_parse(const char *text, Arithmetic *out)
 
 static int get_field(const Arithmetic *arithmetic, Field field)
 {
-    const int values[FIELD_MISTAKE] = {arithmetic->precision, arithmetic->rounding,
-                                       arithmetic->store,     arithmetic->product,
-                                       arithmetic->fused,     arithmetic->flush,
-                                       arithmetic->source_stored};
+    const int values[FIELD_MISTAKE] = {
+        arithmetic->precision, arithmetic->rounding, arithmetic->store,        arithmetic->product,
+        arithmetic->fused,     arithmetic->flush,    arithmetic->source_stored};
     return values[field];
 }
 
@@ -198,37 +197,18 @@ void arithmetic_print(const Arithmetic *arithmetic, char out[ARITHMETIC_TEXT])
         append(out, fields[FIELD_PRECISION].key, precisions[0]);
 }
 
-typedef void DriverBlend(PixelFormat format, const float source[4], void *pixel);
-
-static DriverBlend *driver_blend(const BlendEquation *equation)
-{
-    static DriverBlend *const blends[EQUATION_COUNT + 1] = {
-        [EQUATION_UNDER] = blend_under,      [EQUATION_ADD] = blend_add,
-        [EQUATION_MAX] = blend_max,          [EQUATION_PRODUCT] = blend_product,
-        [EQUATION_SEED] = blend_opaque_seed, [EQUATION_OVER_TRANSMITTANCE] = blend_over,
-        [EQUATION_REPLACE] = blend_replace,  [EQUATION_KEEP] = blend_keep,
-    };
-    return blends[equation_id(equation)];
-}
-
 const char *arithmetic_refuses(const Arithmetic *arithmetic, const BlendEquation *equation,
                                PixelFormat format)
 {
+    (void)equation;
     const FormatInfo *info = format_info(format);
-    bool narrow = format == FORMAT_RG32F || format == FORMAT_R32F;
     if (format != FORMAT_RGBA32F && format != FORMAT_RGBA16F && format != FORMAT_RGBA16 &&
-        format != FORMAT_RGBA8 && !narrow)
+        format != FORMAT_RGBA8 && format != FORMAT_RG32F && format != FORMAT_R32F)
         return "nothing is blended in this format: expected rgba8, rgba16, rgba16f, rgba32f, rg32f "
                "or r32f";
     if (arithmetic->kind == ARITHMETIC_STEPS && arithmetic->precision == PRECISION_CODES &&
         info->kind != KIND_UNORM)
         return "arithmetic of codes needs a unorm format: expected rgba8 or rgba16";
-    if (arithmetic->kind == ARITHMETIC_DRIVER) {
-        DriverBlend *blend = driver_blend(equation);
-        if (!blend ||
-            (narrow && blend != blend_add && blend != blend_max && blend != blend_product))
-            return "the driver's arithmetic is not known for this equation";
-    }
     return NULL;
 }
 
@@ -304,10 +284,9 @@ void arithmetic_blend(const Arithmetic *arithmetic, const BlendEquation *equatio
 {
     size_t bytes = format_pixel_bytes(format);
     if (arithmetic->kind == ARITHMETIC_DRIVER) {
-        DriverBlend *blend = driver_blend(equation);
         uint32_t saved = op_enter();
         for (size_t i = 0; i < count; i++)
-            blend(format, source[i], (char *)pixels + i * bytes);
+            blend_pixel(equation, arithmetic->fused, format, source[i], (char *)pixels + i * bytes);
         op_leave(saved);
         return;
     }

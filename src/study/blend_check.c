@@ -12,6 +12,7 @@ enum {
     CHUNK = 4096,   /* vectors that a task takes at a time */
     RULE_PARTS = 8, /* tasks for the rules */
     STEP = 64,      /* vectors between looks whether an arithmetic without a name still fits */
+    FITS = 8, /* arithmetics without a name that are kept after the first call: the simplest */
     /* An arithmetic that differs in a sixteenth of all values after so many vectors is no
      * candidate any more. */
     ENOUGH = 1 << 18,
@@ -22,6 +23,7 @@ struct BlendCheck {
     BlendCheckDesc desc;
     BlendReport report;
     Pool *pool;
+    uint64_t first;         /* vector of all */
     unsigned char *scratch; /* CHUNK pixels for each worker */
     BlendRuleTally (*parts)[BLEND_RULES];
     /* Of the call in progress: */
@@ -124,27 +126,21 @@ static bool differs(const BlendCandidate *candidate, uint64_t share)
         if (tally->values && (!tally->differing || tally->differing < tally->values / share))
             return false;
     }
-    return true;
+    return candidate->vectors > 0;
 }
 
-static bool is_done(const BlendCheck *check, const BlendCandidate *candidate)
+static bool is_fit(const BlendReport *report, const BlendCandidate *candidate)
 {
-    if (candidate->refused)
-        return true;
-    if (candidate->vectors < check->report.vectors) /* stopped before */
-        return true;
-    if (!candidate->info && candidate->vectors)
-        return !(check->report.has_against && candidate == check->report.candidates) &&
-               differs(candidate, UINT64_MAX);
-    return false;
+    return !candidate->info && !(report->has_against && candidate == report->candidates);
 }
 
 static Result compare_task(const BlendCheck *check, BlendCandidate *candidate,
                            unsigned char *pixels)
 {
     bool against = check->report.has_against && candidate == check->report.candidates;
-    bool fitted = !candidate->info && !against;
-    if (is_done(check, candidate))
+    bool fitted = is_fit(&check->report, candidate);
+    bool stopped = candidate->vectors < check->report.vectors;
+    if (candidate->refused || stopped || (fitted && differs(candidate, UINT64_MAX)))
         return RESULT_OK;
     size_t step = fitted && candidate->vectors == 0 ? STEP : CHUNK;
     for (size_t at = 0; at < check->count; at += step) {
@@ -152,7 +148,7 @@ static Result compare_task(const BlendCheck *check, BlendCandidate *candidate,
         compare_some(check, candidate, at, count, pixels);
         if (fitted && differs(candidate, UINT64_MAX))
             break;
-        if (candidate->vectors >= ENOUGH && !against && !check->desc.every &&
+        if (!fitted && candidate->vectors >= ENOUGH && !against && !check->desc.every &&
             differs(candidate, FAR_OFF))
             break;
     }
@@ -197,15 +193,6 @@ static void init_candidate(const BlendCheckDesc *desc, const ArithmeticInfo *inf
     out->refused = arithmetic_refuses(arithmetic, &desc->equation, desc->format);
 }
 
-/* The name that an arithmetic has, or NULL. */
-static const ArithmeticInfo *find_name(const Arithmetic *arithmetic)
-{
-    for (size_t i = 0; i < arithmetic_count(); i++)
-        if (memcmp(&arithmetic_info(i)->arithmetic, arithmetic, sizeof *arithmetic) == 0)
-            return arithmetic_info(i);
-    return NULL;
-}
-
 static Result list_candidates(BlendCheck *check)
 {
     const BlendCheckDesc *desc = &check->desc;
@@ -220,7 +207,7 @@ static Result list_candidates(BlendCheck *check)
     report->candidates = memory_array(report->count, sizeof *report->candidates);
     if (report->candidates) {
         if (desc->against)
-            init_candidate(desc, find_name(desc->against), desc->against,
+            init_candidate(desc, blend_fit_name(desc->against), desc->against,
                            &report->candidates[at++]);
         for (size_t i = 0; i < arithmetic_count(); i++)
             init_candidate(desc, arithmetic_info(i), &arithmetic_info(i)->arithmetic,
@@ -257,9 +244,31 @@ Result blend_check_open(const BlendCheckDesc *desc, BlendCheck **out)
     return list_candidates(check);
 }
 
+/* Those without a name stay only where they explain something, and the first `most` of them. */
+static void drop_unfit(BlendReport *report, size_t most)
+{
+    size_t kept = 0, fits = 0;
+    for (size_t i = 0; i < report->count; i++) {
+        BlendCandidate *candidate = &report->candidates[i];
+        bool fit = is_fit(report, candidate);
+        if (fit && (fits == most || (!blend_explains(report, i, GROUP_COLOR) &&
+                                     !blend_explains(report, i, GROUP_ALPHA)))) {
+            free(candidate->worst);
+            continue;
+        }
+        fits += fit;
+        if (kept != i)
+            report->candidates[kept] = *candidate;
+        kept++;
+    }
+    report->count = kept;
+}
+
 Result blend_check_add(BlendCheck *check, uint64_t index, size_t count, const float (*source)[4],
                        const void *destination, const void *results)
 {
+    if (check->report.vectors == 0)
+        check->first = index;
     check->index = index;
     check->count = count;
     check->source = source;
@@ -272,32 +281,14 @@ Result blend_check_add(BlendCheck *check, uint64_t index, size_t count, const fl
     for (int i = 0; i < RULE_PARTS; i++)
         blend_rules_merge(check->report.rules, check->parts[i]);
     check->report.vectors += count;
+    if (result == RESULT_OK && check->index == check->first)
+        drop_unfit(&check->report, FITS);
     return result;
-}
-
-/* Those without a name stay only where they explain something. */
-static void drop_unfit(BlendReport *report)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < report->count; i++) {
-        BlendCandidate *candidate = &report->candidates[i];
-        bool explains =
-            candidate->vectors == report->vectors &&
-            (blend_explains(report, i, GROUP_COLOR) || blend_explains(report, i, GROUP_ALPHA));
-        if (candidate->info || explains || (report->has_against && i == 0)) {
-            if (kept != i)
-                report->candidates[kept] = *candidate;
-            kept++;
-        } else {
-            free(candidate->worst);
-        }
-    }
-    report->count = kept;
 }
 
 void blend_check_finish(BlendCheck *check, BlendReport *out)
 {
-    drop_unfit(&check->report);
+    drop_unfit(&check->report, FITS);
     *out = check->report;
     check->report.candidates = NULL;
     check->report.count = 0;

@@ -21,17 +21,17 @@ static bool equal(const Arithmetic *a, const Arithmetic *b)
            a->mistakes == b->mistakes;
 }
 
-static bool is_named(const Arithmetic *arithmetic)
+const ArithmeticInfo *blend_fit_name(const Arithmetic *arithmetic)
 {
     for (size_t i = 0; i < arithmetic_count(); i++)
         if (equal(&arithmetic_info(i)->arithmetic, arithmetic))
-            return true;
-    return false;
+            return arithmetic_info(i);
+    return NULL;
 }
 
 static void add(FitList *list, Arithmetic arithmetic)
 {
-    if (list->result != RESULT_OK || is_named(&arithmetic) ||
+    if (list->result != RESULT_OK || blend_fit_name(&arithmetic) ||
         arithmetic_refuses(&arithmetic, list->equation, list->format))
         return;
     void *items = list->items;

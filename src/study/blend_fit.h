@@ -6,6 +6,9 @@
 #include "base/result.h"
 #include "blend/arithmetic.h"
 
+/* The catalogue's row of an arithmetic; NULL where it has no name. */
+const ArithmeticInfo *blend_fit_name(const Arithmetic *arithmetic);
+
 /* The combinations, those with the fewest fields away from the default first; named ones are left
  * out. The caller frees *out. */
 Result blend_fit_list(const BlendEquation *equation, PixelFormat format, Arithmetic **out,

@@ -304,7 +304,8 @@ static double allowed_error(RuleId id, const BlendCase *one)
 
 typedef struct Seen {
     double exact, value, error; /* error: INFINITY where value is not a finite number */
-    double ulp;                 /* error in units of the format */
+    double ulp;                 /* error in units of the format at the exact result */
+    double scaled;              /* and at the greatest of operands, products and result */
     Extent extent;
     bool finite, in_unit; /* the operands */
 } Seen;
@@ -328,6 +329,7 @@ static Seen look(const BlendCase *one, uint32_t got)
     seen.exact = result_term(one, NULL, &seen.extent).value;
     seen.error = isfinite(seen.value) ? fabs(seen.value - seen.exact) : INFINITY;
     seen.ulp = seen.error / format_unit(one->format, fabs(seen.exact));
+    seen.scaled = seen.error / format_unit(one->format, seen.extent.largest);
     return seen;
 }
 
@@ -398,9 +400,9 @@ static void judge(RuleId id, BlendRuleTally *tally, const BlendCase *one, uint64
         (suite || seen->ulp > 0.5) && seen->error > with_slack(one, allowed_error(id, one));
     bool first = outside && tally->outside == 0;
     tally->outside += outside;
-    if (first || (outside == (tally->outside > 0) && seen->ulp > tally->largest))
+    if (first || (outside == (tally->outside > 0) && seen->scaled > tally->largest))
         keep_example(tally, one, index, seen, got);
-    tally->largest = fmax(tally->largest, seen->ulp);
+    tally->largest = fmax(tally->largest, seen->scaled);
     tally->largest_real = fmax(tally->largest_real, seen->error);
 }
 

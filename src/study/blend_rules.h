@@ -31,7 +31,8 @@ typedef struct BlendRuleTally {
     const BlendRuleInfo *info;
     bool applies; /* to the format */
     uint64_t judged, unstated, outside;
-    double largest;      /* |stored − exact| in ULP of the format (codes), of the judged */
+    double largest;      /* of the judged: |stored − exact| in codes, or in ULP of the greatest of
+                          * operands, products and result */
     double largest_real; /* the same as a number */
     bool has_example;    /* the value farthest outside, or else with the largest error */
     int channel;
