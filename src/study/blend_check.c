@@ -12,7 +12,8 @@ enum {
     CHUNK = 4096,   /* vectors that a task takes at a time */
     RULE_PARTS = 8, /* tasks for the rules */
     STEP = 64,      /* vectors between looks whether an arithmetic without a name still fits */
-    FITS = 8, /* arithmetics without a name that are kept after the first call: the simplest */
+    FIRST = 1024,   /* vectors after which most arithmetics without a name are out */
+    FITS = 8,       /* arithmetics without a name that are kept after that: the simplest */
     /* An arithmetic that differs in a sixteenth of all values after so many vectors is no
      * candidate any more. */
     ENOUGH = 1 << 18,
@@ -23,7 +24,6 @@ struct BlendCheck {
     BlendCheckDesc desc;
     BlendReport report;
     Pool *pool;
-    uint64_t first;         /* vector of all */
     unsigned char *scratch; /* CHUNK pixels for each worker */
     BlendRuleTally (*parts)[BLEND_RULES];
     /* Of the call in progress: */
@@ -264,11 +264,9 @@ static void drop_unfit(BlendReport *report, size_t most)
     report->count = kept;
 }
 
-Result blend_check_add(BlendCheck *check, uint64_t index, size_t count, const float (*source)[4],
-                       const void *destination, const void *results)
+static Result add_some(BlendCheck *check, uint64_t index, size_t count, const float (*source)[4],
+                       const unsigned char *destination, const unsigned char *results)
 {
-    if (check->report.vectors == 0)
-        check->first = index;
     check->index = index;
     check->count = count;
     check->source = source;
@@ -281,9 +279,24 @@ Result blend_check_add(BlendCheck *check, uint64_t index, size_t count, const fl
     for (int i = 0; i < RULE_PARTS; i++)
         blend_rules_merge(check->report.rules, check->parts[i]);
     check->report.vectors += count;
-    if (result == RESULT_OK && check->index == check->first)
-        drop_unfit(&check->report, FITS);
     return result;
+}
+
+Result blend_check_add(BlendCheck *check, uint64_t index, size_t count, const float (*source)[4],
+                       const void *destination, const void *results)
+{
+    size_t bytes = format_pixel_bytes(check->desc.format), first = 0;
+    Result result = RESULT_OK;
+    if (check->report.vectors == 0) {
+        first = count < FIRST ? count : FIRST;
+        result = add_some(check, index, first, source, destination, results);
+        drop_unfit(&check->report, FITS);
+    }
+    if (result != RESULT_OK || first == count)
+        return result;
+    return add_some(check, index + first, count - first, source + first,
+                    (const unsigned char *)destination + first * bytes,
+                    (const unsigned char *)results + first * bytes);
 }
 
 void blend_check_finish(BlendCheck *check, BlendReport *out)
