@@ -27,6 +27,7 @@ struct BlendCheck {
     unsigned char *scratch; /* CHUNK pixels for each worker */
     BlendRuleTally (*parts)[BLEND_RULES];
     /* Of the call in progress: */
+    VectorSet set;
     uint64_t index;
     size_t count;
     const float (*source)[4];
@@ -64,6 +65,7 @@ static void note(const BlendCheck *check, BlendCandidate *candidate, size_t i, i
                      check->destination + i * bytes};
     bool first =
         candidate->groups[GROUP_COLOR].differing + candidate->groups[GROUP_ALPHA].differing == 1;
+    example->set = check->set;
     example->index = check->index + i;
     example->channel = channel;
     example->complexity = blend_case_complexity(&one);
@@ -167,7 +169,8 @@ static Result judge_task(const BlendCheck *check, uint32_t part)
             BlendCase one = {&check->report.equation, check->desc.format, k, check->source[i],
                              check->destination + i * bytes};
             uint32_t got = format_bits(check->desc.format, check->results + i * bytes, k);
-            blend_rules_add(&one, check->index + i, got, check->parts[part]);
+            blend_rules_add(&one, (BlendPlace){check->set, check->index + i}, got,
+                            check->parts[part]);
         }
     return RESULT_OK;
 }
@@ -282,9 +285,10 @@ static Result add_some(BlendCheck *check, uint64_t index, size_t count, const fl
     return result;
 }
 
-Result blend_check_add(BlendCheck *check, uint64_t index, size_t count, const float (*source)[4],
-                       const void *destination, const void *results)
+Result blend_check_add(BlendCheck *check, VectorSet set, uint64_t index, size_t count,
+                       const float (*source)[4], const void *destination, const void *results)
 {
+    check->set = set;
     size_t bytes = format_pixel_bytes(check->desc.format), first = 0;
     Result result = RESULT_OK;
     if (check->report.vectors == 0) {

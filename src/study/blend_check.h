@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "blend/arithmetic.h"
 #include "blend/equation.h"
+#include "blend/vectors.h"
 #include "study/blend_rules.h"
 
 typedef enum BlendGroup {
@@ -20,7 +21,8 @@ typedef enum BlendGroup {
 
 /* One value of the stream that an arithmetic does not give. */
 typedef struct BlendExample {
-    uint64_t index; /* of the vector */
+    VectorSet set;
+    uint64_t index; /* of the vector in its set */
     int channel;
     int complexity; /* blend_case_complexity */
     uint32_t ulp;   /* of the format (codes); UINT32_MAX between a NaN and a number */
@@ -79,9 +81,10 @@ typedef struct BlendCheck BlendCheck;
 
 /* The caller closes it, also after a failure of the others. */
 Result blend_check_open(const BlendCheckDesc *desc, BlendCheck **out);
-/* The next vectors; index is that of the first. destination and results: pixels of the format. */
-Result blend_check_add(BlendCheck *check, uint64_t index, size_t count, const float (*source)[4],
-                       const void *destination, const void *results);
+/* The next vectors, of the set from number `index` on. destination and results: pixels of the
+ * format. */
+Result blend_check_add(BlendCheck *check, VectorSet set, uint64_t index, size_t count,
+                       const float (*source)[4], const void *destination, const void *results);
 /* Moves what was found to *out, which the caller frees with blend_report_free. */
 void blend_check_finish(BlendCheck *check, BlendReport *out);
 void blend_check_close(BlendCheck *check); /* NULL is fine */

@@ -81,7 +81,7 @@ static void take_stored(Run *run, size_t count)
         }
 }
 
-static Result blend_some(Run *run, uint64_t index, size_t count)
+static Result blend_some(Run *run, VectorSet set, uint64_t index, size_t count)
 {
     PixelFormat format = run->desc->format;
     size_t bytes = format_pixel_bytes(format);
@@ -103,7 +103,7 @@ static Result blend_some(Run *run, uint64_t index, size_t count)
     run->done += count;
     if (run->desc->progress)
         run->desc->progress(run->done);
-    return blend_check_add(run->check, index, count, (const float(*)[4])run->source,
+    return blend_check_add(run->check, set, index, count, (const float(*)[4])run->source,
                            run->destination, run->results);
 }
 
@@ -119,7 +119,7 @@ static Result run_set(Run *run, VectorSet set)
         uint64_t from =
             count == all ? at : (uint64_t)((double)at / (double)count * (double)(all - some));
         vectors_make(&spec, from, some, run->source, run->destination);
-        result = blend_some(run, from, some);
+        result = blend_some(run, set, from, some);
     }
     return result;
 }

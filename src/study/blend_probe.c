@@ -97,7 +97,7 @@ static bool is_apart(const BlendProbe *probe, const unsigned char *one, size_t c
 }
 
 bool blend_probe_apart(const BlendProbe *probe, const unsigned char *one, size_t count,
-                       const unsigned char *const *others, BlendApart *out)
+                       const unsigned char *const *others, BlendExample *out)
 {
     const FormatInfo *info = format_info(probe->format);
     size_t bytes = format_pixel_bytes(probe->format), found = SIZE_MAX;
@@ -119,15 +119,15 @@ bool blend_probe_apart(const BlendProbe *probe, const unsigned char *one, size_t
     }
     if (found == SIZE_MAX)
         return false;
-    *out = (BlendApart){.set = probe->set[found]};
-    out->example =
-        (BlendExample){.index = probe->index[found],
+    *out =
+        (BlendExample){.set = probe->set[found],
+                       .index = probe->index[found],
                        .channel = channel,
                        .complexity = least,
                        .expected = format_bits(probe->format, others[0] + found * bytes, channel),
                        .got = format_bits(probe->format, one + found * bytes, channel)};
-    out->example.ulp = format_ulp(info->kind, out->example.expected, out->example.got);
-    memcpy(out->example.source, probe->source[found], sizeof out->example.source);
-    memcpy(out->example.pixel, probe->destination + found * bytes, bytes);
+    out->ulp = format_ulp(info->kind, out->expected, out->got);
+    memcpy(out->source, probe->source[found], sizeof out->source);
+    memcpy(out->pixel, probe->destination + found * bytes, bytes);
     return true;
 }

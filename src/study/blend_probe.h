@@ -26,15 +26,10 @@ void blend_probe_free(BlendProbe *probe);
  * frees; NULL when memory is exhausted. */
 unsigned char *blend_probe_blend(const BlendProbe *probe, const Arithmetic *arithmetic);
 
-/* A vector on which one's result is none of the others'. */
-typedef struct BlendApart {
-    VectorSet set;
-    BlendExample example; /* expected: what the first of the others gives; got: what one gives */
-} BlendApart;
-
-/* The simplest one, by blend_case_complexity, then the first; false if the probe has none. one and
- * others: of blend_probe_blend. */
+/* The vector on which one's result is none of the others': the simplest by blend_case_complexity,
+ * then the first; false if the probe has none. out->expected is what the first of the others gives,
+ * out->got what one gives. one and others: of blend_probe_blend. */
 bool blend_probe_apart(const BlendProbe *probe, const unsigned char *one, size_t count,
-                       const unsigned char *const *others, BlendApart *out);
+                       const unsigned char *const *others, BlendExample *out);
 
 #endif

@@ -359,19 +359,20 @@ static bool is_unstated(RuleId id, const BlendCase *one, const Seen *seen)
     return seen->extent.largest * (1.0 + 0x1p-9) >= (kind == KIND_HALF ? 65504.0 : (double)FLT_MAX);
 }
 
-static void keep_example(BlendRuleTally *tally, const BlendCase *one, uint64_t index,
+static void keep_example(BlendRuleTally *tally, const BlendCase *one, BlendPlace place,
                          const Seen *seen, uint32_t got)
 {
     tally->has_example = true;
     tally->channel = one->channel;
-    tally->index = index;
+    tally->set = place.set;
+    tally->index = place.index;
     tally->exact = seen->exact;
     memcpy(tally->source, one->source, sizeof tally->source);
     memcpy(tally->pixel, one->pixel, format_pixel_bytes(one->format));
     tally->got = got;
 }
 
-static void judge_nan(BlendRuleTally *tally, const BlendCase *one, uint64_t index, uint32_t got)
+static void judge_nan(BlendRuleTally *tally, const BlendCase *one, BlendPlace place, uint32_t got)
 {
     BlendFunc func = blend_case_terms(one).func;
     if (func == BLEND_FUNC_MIN || func == BLEND_FUNC_MAX || !has_nan(one)) {
@@ -383,10 +384,10 @@ static void judge_nan(BlendRuleTally *tally, const BlendCase *one, uint64_t inde
         return;
     Seen seen = {.exact = NAN};
     if (tally->outside++ == 0)
-        keep_example(tally, one, index, &seen, got);
+        keep_example(tally, one, place, &seen, got);
 }
 
-static void judge(RuleId id, BlendRuleTally *tally, const BlendCase *one, uint64_t index,
+static void judge(RuleId id, BlendRuleTally *tally, const BlendCase *one, BlendPlace place,
                   const Seen *seen, uint32_t got)
 {
     if (is_unstated(id, one, seen)) {
@@ -401,21 +402,21 @@ static void judge(RuleId id, BlendRuleTally *tally, const BlendCase *one, uint64
     bool first = outside && tally->outside == 0;
     tally->outside += outside;
     if (first || (outside == (tally->outside > 0) && seen->scaled > tally->largest))
-        keep_example(tally, one, index, seen, got);
+        keep_example(tally, one, place, seen, got);
     tally->largest = fmax(tally->largest, seen->scaled);
     tally->largest_real = fmax(tally->largest_real, seen->error);
 }
 
-void blend_rules_add(const BlendCase *one, uint64_t index, uint32_t got, BlendRuleTally *tallies)
+void blend_rules_add(const BlendCase *one, BlendPlace place, uint32_t got, BlendRuleTally *tallies)
 {
     Seen seen = look(one, got);
     for (int i = 0; i < BLEND_RULES; i++) {
         if (!tallies[i].applies)
             continue;
         if (i == RULE_D3D11_NAN)
-            judge_nan(&tallies[i], one, index, got);
+            judge_nan(&tallies[i], one, place, got);
         else
-            judge((RuleId)i, &tallies[i], one, index, &seen, got);
+            judge((RuleId)i, &tallies[i], one, place, &seen, got);
     }
 }
 

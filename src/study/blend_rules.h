@@ -8,6 +8,7 @@
 #ifndef PEEL_STUDY_BLEND_RULES_H
 #define PEEL_STUDY_BLEND_RULES_H
 
+#include "blend/vectors.h"
 #include "study/blend_case.h"
 
 typedef enum BlendApi {
@@ -36,7 +37,8 @@ typedef struct BlendRuleTally {
     double largest_real; /* the same as a number */
     bool has_example;    /* the value farthest outside, or else with the largest error */
     int channel;
-    uint64_t index; /* of the vector */
+    VectorSet set; /* of the vector */
+    uint64_t index;
     double exact;
     float source[4];
     unsigned char pixel[16];
@@ -50,9 +52,14 @@ enum {
 /* out: BLEND_RULES tallies, empty. */
 void blend_rules_start(PixelFormat format, BlendRuleTally *out);
 
-/* Judges got, the stored bits of the case's channel, by all rules that apply. index: of the vector,
- * for examples. */
-void blend_rules_add(const BlendCase *one, uint64_t index, uint32_t got, BlendRuleTally *tallies);
+/* Where a vector is from, for examples. */
+typedef struct BlendPlace {
+    VectorSet set;
+    uint64_t index;
+} BlendPlace;
+
+/* Judges got, the stored bits of the case's channel, by all rules that apply. */
+void blend_rules_add(const BlendCase *one, BlendPlace place, uint32_t got, BlendRuleTally *tallies);
 
 /* Adds what another thread saw of later vectors. */
 void blend_rules_merge(BlendRuleTally *tallies, const BlendRuleTally *later);
