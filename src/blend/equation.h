@@ -60,7 +60,9 @@ typedef struct EquationInfo {
     BlendEquation equation;
 } EquationInfo;
 
-const EquationInfo *equation_info(EquationId id);     /* static */
+const EquationInfo *equation_info(EquationId id); /* static */
+/* The name of the table that these factors and functions have; EQUATION_COUNT if none. */
+EquationId equation_id(const BlendEquation *equation);
 const char *equation_factor_name(BlendFactor factor); /* "one-minus-src-alpha"; static */
 const char *equation_func_name(BlendFunc func);       /* "reverse-subtract"; static */
 

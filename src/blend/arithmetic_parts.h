@@ -1,0 +1,54 @@
+/* What the arithmetics of arithmetic.h are made of: one channel of one blend. */
+#ifndef PEEL_BLEND_ARITHMETIC_PARTS_H
+#define PEEL_BLEND_ARITHMETIC_PARTS_H
+
+#include "blend/arithmetic.h"
+
+/* One channel's factors and function. */
+typedef struct ChannelEquation {
+    BlendFactor source, destination;
+    BlendFunc func;
+    bool alpha;
+} ChannelEquation;
+
+static inline ChannelEquation channel_equation(const BlendEquation *equation, int channel)
+{
+    if (channel == 3)
+        return (ChannelEquation){equation->source_alpha, equation->destination_alpha,
+                                 equation->func_alpha, true};
+    return (ChannelEquation){equation->source, equation->destination, equation->func, false};
+}
+
+/* The numbers that a channel is blended from: floats, halves or codes, exactly. */
+typedef struct ChannelOperands {
+    double source, destination, source_alpha, destination_alpha;
+    double one; /* 1, or the greatest code */
+} ChannelOperands;
+
+/* A factor is base, or one − base; base is 0, one or an operand. */
+typedef struct FactorBase {
+    double base;
+    bool complement;
+} FactorBase;
+
+/* FACTOR_SRC_ALPHA_SATURATE is one of its two operands, by an exact comparison; where one of them
+ * is NaN, 1 − the destination's alpha. */
+FactorBase arithmetic_factor(BlendFactor factor, bool alpha, const ChannelOperands *operands);
+
+/* The stored bits of a channel from a value that is in the format, or a code. */
+uint32_t arithmetic_bits(FormatKind kind, double value);
+/* The number that stored bits are; of unorm formats the code. */
+double arithmetic_value(FormatKind kind, uint32_t bits);
+void arithmetic_put(PixelFormat format, void *pixel, int channel, uint32_t bits);
+
+/* One channel as ARITHMETIC_EXACT. source and pixel as for arithmetic_blend; the pixel is that
+ * before the blend. */
+uint32_t arithmetic_exact(const BlendEquation *equation, PixelFormat format, const float source[4],
+                          const void *pixel, int channel, BlendSteps *steps);
+
+/* One channel as ARITHMETIC_STEPS; returns the stored bits. */
+uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *equation,
+                             PixelFormat format, const float source[4], const void *pixel,
+                             int channel, BlendSteps *steps);
+
+#endif

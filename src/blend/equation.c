@@ -1,0 +1,190 @@
+#include "blend/equation.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const EquationInfo infos[EQUATION_COUNT] = {
+    [EQUATION_UNDER] = {"under",
+                        "behind what is there: s*T + d, T*(1 - sA); premultiplied, T is alpha",
+                        {FACTOR_DST_ALPHA, FACTOR_ONE, FACTOR_ZERO, FACTOR_ONE_MINUS_SRC_ALPHA,
+                         BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+    [EQUATION_OVER] = {"over",
+                       "in front, straight colours: s*sA + d*(1 - sA), sA + dA*(1 - sA)",
+                       {FACTOR_SRC_ALPHA, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_ONE,
+                        FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+    [EQUATION_OVER_PREMULTIPLIED] = {"over-premultiplied",
+                                     "in front, premultiplied colours: s + d*(1 - sA)",
+                                     {FACTOR_ONE, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_ONE,
+                                      FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+    [EQUATION_ADD] = {"add",
+                      "s + d",
+                      {FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, BLEND_FUNC_ADD,
+                       BLEND_FUNC_ADD}},
+    [EQUATION_MAX] = {"max",
+                      "the greater of s and d",
+                      {FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, BLEND_FUNC_MAX,
+                       BLEND_FUNC_MAX}},
+    [EQUATION_WEIGHTED_SUM] = {"weighted-sum",
+                               "s*sA + d, sA + dA: colours weighted by alpha, and the weights",
+                               {FACTOR_SRC_ALPHA, FACTOR_ONE, FACTOR_ONE, FACTOR_ONE,
+                                BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+    [EQUATION_PRODUCT] = {"product",
+                          "d*(1 - s)",
+                          {FACTOR_ZERO, FACTOR_ONE_MINUS_SRC_COLOR, FACTOR_ZERO,
+                           FACTOR_ONE_MINUS_SRC_COLOR, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+    [EQUATION_SEED] = {"seed",
+                       "s*dA + d in all channels",
+                       {FACTOR_DST_ALPHA, FACTOR_ONE, FACTOR_DST_ALPHA, FACTOR_ONE, BLEND_FUNC_ADD,
+                        BLEND_FUNC_ADD}},
+    [EQUATION_OVER_TRANSMITTANCE] = {"over-transmittance",
+                                     "in front, premultiplied: s + d*(1 - sA), T*(1 - sA)",
+                                     {FACTOR_ONE, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_ZERO,
+                                      FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+    [EQUATION_REPLACE] = {"replace",
+                          "s*sA + d*(1 - sA) in all channels",
+                          {FACTOR_SRC_ALPHA, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_SRC_ALPHA,
+                           FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+    [EQUATION_KEEP] = {"keep",
+                       "s*(1 - dA) + d in all channels",
+                       {FACTOR_ONE_MINUS_DST_ALPHA, FACTOR_ONE, FACTOR_ONE_MINUS_DST_ALPHA,
+                        FACTOR_ONE, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+};
+
+static const char *const factor_names[FACTOR_COUNT] = {
+    [FACTOR_ZERO] = "zero",
+    [FACTOR_ONE] = "one",
+    [FACTOR_SRC_COLOR] = "src-color",
+    [FACTOR_ONE_MINUS_SRC_COLOR] = "one-minus-src-color",
+    [FACTOR_DST_COLOR] = "dst-color",
+    [FACTOR_ONE_MINUS_DST_COLOR] = "one-minus-dst-color",
+    [FACTOR_SRC_ALPHA] = "src-alpha",
+    [FACTOR_ONE_MINUS_SRC_ALPHA] = "one-minus-src-alpha",
+    [FACTOR_DST_ALPHA] = "dst-alpha",
+    [FACTOR_ONE_MINUS_DST_ALPHA] = "one-minus-dst-alpha",
+    [FACTOR_SRC_ALPHA_SATURATE] = "src-alpha-saturate",
+};
+
+static const char *const func_names[BLEND_FUNC_COUNT] = {
+    [BLEND_FUNC_ADD] = "add",
+    [BLEND_FUNC_SUBTRACT] = "subtract",
+    [BLEND_FUNC_REVERSE_SUBTRACT] = "reverse-subtract",
+    [BLEND_FUNC_MIN] = "min",
+    [BLEND_FUNC_MAX] = "max",
+};
+
+const EquationInfo *equation_info(EquationId id)
+{
+    return &infos[id];
+}
+
+const char *equation_factor_name(BlendFactor factor)
+{
+    return factor_names[factor];
+}
+
+const char *equation_func_name(BlendFunc func)
+{
+    return func_names[func];
+}
+
+static bool same(const BlendEquation *a, const BlendEquation *b)
+{
+    return a->source == b->source && a->destination == b->destination &&
+           a->source_alpha == b->source_alpha && a->destination_alpha == b->destination_alpha &&
+           a->func == b->func && a->func_alpha == b->func_alpha;
+}
+
+EquationId equation_id(const BlendEquation *equation)
+{
+    EquationId id = 0;
+    while (id < EQUATION_COUNT && !same(equation, &infos[id].equation))
+        id++;
+    return id;
+}
+
+/* The first of `count` names that text[0..length) is; -1 if none. */
+static int find(const char *const *names, int count, const char *text, size_t length)
+{
+    for (int i = 0; i < count; i++)
+        if (strlen(names[i]) == length && memcmp(names[i], text, length) == 0)
+            return i;
+    return -1;
+}
+
+/* Comma-separated names of text[0..length) to their places in the table, at most `most` of them.
+ * *count: how many. */
+static Result parse_list(const char *text, size_t length, const char *const *names, int name_count,
+                         const char *expected, int most, int out[4], int *count)
+{
+    const char *end = text + length;
+    for (*count = 0;; ++*count) {
+        const char *comma = memchr(text, ',', (size_t)(end - text));
+        size_t part = (size_t)((comma ? comma : end) - text);
+        if (*count == most)
+            return result_fail(RESULT_BAD_INPUT,
+                               "equation: '%.*s': expected at most %d %ss, separated by commas",
+                               (int)length, end - length, most, expected);
+        out[*count] = find(names, name_count, text, part);
+        if (out[*count] < 0)
+            return result_fail(RESULT_BAD_INPUT,
+                               "equation: '%.*s': expected an equation's name or a %s, such as %s",
+                               (int)part, text, expected, names[name_count > 5 ? 6 : 4]);
+        if (!comma)
+            break;
+        text = comma + 1;
+    }
+    ++*count;
+    return RESULT_OK;
+}
+
+Result equation_parse(const char *text, BlendEquation *out)
+{
+    for (int i = 0; i < EQUATION_COUNT; i++)
+        if (strcmp(infos[i].name, text) == 0) {
+            *out = infos[i].equation;
+            return RESULT_OK;
+        }
+    const char *colon = strchr(text, ':');
+    size_t length = colon ? (size_t)(colon - text) : strlen(text);
+    int factors[4], funcs[4] = {BLEND_FUNC_ADD}, count, func_count = 1;
+    Result result =
+        parse_list(text, length, factor_names, FACTOR_COUNT, "factor", 4, factors, &count);
+    if (result == RESULT_OK && colon)
+        result = parse_list(colon + 1, strlen(colon + 1), func_names, BLEND_FUNC_COUNT, "function",
+                            2, funcs, &func_count);
+    if (result != RESULT_OK)
+        return result;
+    if (count != 2 && count != 4)
+        return result_fail(RESULT_BAD_INPUT,
+                           "equation: '%s': expected 2 factors (source, destination) or 4 (also of "
+                           "alpha), found %d",
+                           text, count);
+    *out = (BlendEquation){.source = factors[0],
+                           .destination = factors[1],
+                           .source_alpha = factors[count - 2],
+                           .destination_alpha = factors[count - 1],
+                           .func = funcs[0],
+                           .func_alpha = funcs[func_count - 1]};
+    return RESULT_OK;
+}
+
+void equation_print(const BlendEquation *equation, char out[EQUATION_TEXT])
+{
+    EquationId id = equation_id(equation);
+    if (id < EQUATION_COUNT) {
+        snprintf(out, EQUATION_TEXT, "%s", infos[id].name);
+        return;
+    }
+    int at = snprintf(out, EQUATION_TEXT, "%s,%s", factor_names[equation->source],
+                      factor_names[equation->destination]);
+    if (equation->source_alpha != equation->source ||
+        equation->destination_alpha != equation->destination)
+        at += snprintf(out + at, (size_t)(EQUATION_TEXT - at), ",%s,%s",
+                       factor_names[equation->source_alpha],
+                       factor_names[equation->destination_alpha]);
+    if (equation->func == BLEND_FUNC_ADD && equation->func_alpha == BLEND_FUNC_ADD)
+        return;
+    at += snprintf(out + at, (size_t)(EQUATION_TEXT - at), ":%s", func_names[equation->func]);
+    if (equation->func_alpha != equation->func)
+        snprintf(out + at, (size_t)(EQUATION_TEXT - at), ",%s", func_names[equation->func_alpha]);
+}
