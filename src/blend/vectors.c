@@ -94,20 +94,7 @@ static void make(const VectorSpec *spec, uint64_t index, Vector *out)
         make_triple(spec, index, out);
 }
 
-static void pack(PixelFormat format, const uint32_t bits[4], unsigned char *pixel)
-{
-    const FormatInfo *info = format_info(format);
-    for (int c = 0; c < info->channels; c++) {
-        uint8_t byte = (uint8_t)bits[c];
-        uint16_t word = (uint16_t)bits[c];
-        const void *from = info->channel_bytes == 1   ? &byte
-                           : info->channel_bytes == 2 ? (const void *)&word
-                                                      : &bits[c];
-        memcpy(pixel + c * info->channel_bytes, from, (size_t)info->channel_bytes);
-    }
-}
-
-/* All 256 codes of rgba8 in their order: what make and pack do, without a detour for each. */
+/* All 256 codes of rgba8 in their order: what the loop below does, without a detour for each. */
 static void make_codes(const float unorm[VECTOR_CODES], uint64_t first, size_t count,
                        float (*source)[4], unsigned char (*destination)[4])
 {
@@ -124,6 +111,7 @@ void vectors_make(const VectorSpec *spec, uint64_t first, size_t count, float (*
                   void *destination)
 {
     size_t size = format_pixel_bytes(spec->format);
+    int channels = format_info(spec->format)->channels;
     if (spec->set == VECTORS_EXHAUSTIVE && spec->format == FORMAT_RGBA8) {
         float unorm[VECTOR_CODES];
         for (uint32_t k = 0; k < VECTOR_CODES; k++)
@@ -135,6 +123,7 @@ void vectors_make(const VectorSpec *spec, uint64_t first, size_t count, float (*
         Vector vector;
         make(spec, first + v, &vector);
         memcpy(source[v], vector.source, sizeof vector.source);
-        pack(spec->format, vector.destination, (unsigned char *)destination + v * size);
+        for (int c = 0; c < channels; c++)
+            format_set_bits(spec->format, (char *)destination + v * size, c, vector.destination[c]);
     }
 }
