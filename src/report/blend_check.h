@@ -11,13 +11,13 @@
 /* What the user asked for beside the figures. */
 typedef struct ReportBlend {
     const BlendReport *report;
-    BlendApi api;         /* whose rules count; API_COUNT: any */
-    const char *note;     /* the file's own "arithmetic", "" where it has none */
-    const char *subject;  /* the file, or the driver */
-    const char *vectors;  /* "exhaustive, vectors 0 to 65535" */
-    uint32_t fail, warn;  /* ULP; UINT32_MAX: not given. Only with an arithmetic to compare with */
-    bool verbose;         /* every arithmetic's row */
-    int code;             /* the exit code */
+    BlendApi api;        /* whose rules count; API_COUNT: any */
+    const char *note;    /* the file's own "arithmetic", "" where it has none */
+    const char *subject; /* the file, or the driver */
+    const char *vectors; /* "exhaustive, vectors 0 to 65535" */
+    uint32_t fail, warn; /* ULP; UINT32_MAX: not given. Only with an arithmetic to compare with */
+    bool verbose;        /* every arithmetic's row */
+    int code;            /* the exit code */
 } ReportBlend;
 
 /* Rows of arithmetics and of rules, the verdict, and examples. */
@@ -40,7 +40,8 @@ Result report_blend_sequences_json(const SequenceReport *report, const char *sub
                                    const char *path);
 
 /* Of --list: every named arithmetic, and of the wrong ones what shows them. */
-void report_blend_list(const BlendWrongList *list, FILE *out);
+/* every: a row for each format and equation, not only the simplest of each format. */
+void report_blend_list(const BlendWrongList *list, bool every, FILE *out);
 Result report_blend_list_json(const BlendWrongList *list, const char *path);
 
 #endif

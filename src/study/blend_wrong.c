@@ -80,14 +80,14 @@ static int by_arithmetic(const void *a, const void *b)
     return (int)x->equation - (int)y->equation;
 }
 
-Result blend_wrong_list(PixelFormat format, EquationId equation, size_t effort, BlendWrongList *out)
+Result blend_wrong_list(unsigned formats, EquationId equation, size_t effort, BlendWrongList *out)
 {
     *out = (BlendWrongList){
         memory_array(arithmetic_count() * BLEND_FORMATS * EQUATION_COUNT, sizeof *out->rows), 0};
     Result result = out->rows ? RESULT_OK : RESULT_NO_MEMORY;
     for (int i = 0; i < BLEND_FORMATS; i++)
         for (int k = 0; k < EQUATION_COUNT && result == RESULT_OK; k++)
-            if ((format == FORMAT_NONE || format == blend_formats[i]) &&
+            if ((!formats || formats >> i & 1) &&
                 (equation == EQUATION_COUNT || (int)equation == k))
                 result = add_pair(blend_formats[i], (EquationId)k, effort, out);
     if (result == RESULT_OK)

@@ -26,10 +26,9 @@ enum {
 /* The formats that are blended, in the order of reports. */
 extern const PixelFormat blend_formats[BLEND_FORMATS];
 
-/* format FORMAT_NONE: all; equation EQUATION_COUNT: all that have a name. effort: vectors to look
- * at for each pair. The caller frees with blend_wrong_free. */
-Result blend_wrong_list(PixelFormat format, EquationId equation, size_t effort,
-                        BlendWrongList *out);
+/* formats: bits 1 << place in blend_formats, 0 for all; equation EQUATION_COUNT: all that have a
+ * name. effort: vectors to look at for each pair. The caller frees with blend_wrong_free. */
+Result blend_wrong_list(unsigned formats, EquationId equation, size_t effort, BlendWrongList *out);
 void blend_wrong_free(BlendWrongList *list);
 
 /* The row of the arithmetic and format with the simplest vector, over all equations; NULL where no
