@@ -42,13 +42,35 @@ double arithmetic_value(FormatKind kind, uint32_t bits);
 void arithmetic_put(PixelFormat format, void *pixel, int channel, uint32_t bits);
 
 /* One channel as ARITHMETIC_EXACT. source and pixel as for arithmetic_blend; the pixel is that
- * before the blend. */
+ * before the blend. steps may be NULL. */
 uint32_t arithmetic_exact(const BlendEquation *equation, PixelFormat format, const float source[4],
                           const void *pixel, int channel, BlendSteps *steps);
 
-/* One channel as ARITHMETIC_STEPS; returns the stored bits. */
+/* One channel as ARITHMETIC_STEPS; returns the stored bits. steps may be NULL. */
 uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *equation,
                              PixelFormat format, const float source[4], const void *pixel,
                              int channel, BlendSteps *steps);
+
+/* ---- mistakes; without any, what they are given comes back ---- */
+
+typedef enum EarlyOut {
+    EARLY_OUT_NO = 0,
+    EARLY_OUT_SOURCE, /* the source is stored */
+    EARLY_OUT_KEEP    /* the pixel is left */
+} EarlyOut;
+
+BlendEquation mistake_equation(const Arithmetic *arithmetic, const BlendEquation *equation);
+/* A source before it is made an operand. */
+double mistake_source(const Arithmetic *arithmetic, double x, double alpha, bool color);
+void mistake_operands(const Arithmetic *arithmetic, bool color, ChannelOperands *operands);
+EarlyOut mistake_early_out(const Arithmetic *arithmetic, const BlendEquation *equation,
+                           const ChannelOperands *operands);
+/* one − x where that is done wrong, else NaN. */
+double mistake_complement(const Arithmetic *arithmetic, double one, double x);
+double mistake_sum(const Arithmetic *arithmetic, bool color, double sum);
+/* A sum of codes to a code. */
+double mistake_code(const Arithmetic *arithmetic, double one, double code);
+/* NULL, or why its mistakes are not of the format (static). */
+const char *mistake_refuses(const Arithmetic *arithmetic, PixelFormat format);
 
 #endif

@@ -303,8 +303,8 @@ static inline Class class_of(const BlendEquation *equation, int channels, bool a
     class.source_plain = constant(FACTOR_ONE, e.source, e.source_alpha, channels);
     class.destination_absent = constant(FACTOR_ZERO, e.destination, e.destination_alpha, channels);
     class.destination_plain = constant(FACTOR_ONE, e.destination, e.destination_alpha, channels);
-    class.linked =
-        channels == 1 || (e.source == e.destination && e.source_alpha == e.destination_alpha);
+    class.linked = channels == 1 || (e.source == e.destination &&
+                                     (channels < 4 || e.source_alpha == e.destination_alpha));
     return class;
 }
 
@@ -476,8 +476,6 @@ static inline uint32_t code_channel(int bits, const Class *class, bool alpha, ui
     uint32_t f = code_factor(bits, class->source, alpha, s, d, source_alpha, destination_alpha);
     uint32_t g =
         code_factor(bits, class->destination, alpha, s, d, source_alpha, destination_alpha);
-    if (class->linked && class->source == class->destination)
-        return multiply(bits, code_combine(most, class->func, s, d), f);
     return code_combine(most, class->func, multiply(bits, s, f), multiply(bits, d, g));
 }
 

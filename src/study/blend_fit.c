@@ -44,7 +44,7 @@ static void add(FitList *list, Arithmetic arithmetic)
 /* Codes are exact but for their products and the stored source. */
 static void add_codes(FitList *list)
 {
-    for (int product = CODES_NEAREST; product <= CODES_SHIFT_STRETCH; product++)
+    for (int product = CODES_NEAREST; product <= CODES_RECIPROCAL; product++)
         for (int store = BLEND_NEAREST_EVEN; store <= BLEND_UPWARD; store++)
             add(list, (Arithmetic){.kind = ARITHMETIC_STEPS,
                                    .precision = PRECISION_CODES,
@@ -72,7 +72,7 @@ static void add_mistakes(FitList *list)
             const ArithmeticInfo *info = arithmetic_info(i);
             Arithmetic arithmetic = info->arithmetic;
             arithmetic.mistakes |= 1u << mistake;
-            if (!info->wrong)
+            if (!info->wrong && info->arithmetic.kind == ARITHMETIC_STEPS)
                 add(list, arithmetic);
         }
 }
