@@ -138,13 +138,13 @@ static const char *largest(const BlendReport *report, const BlendRuleTally *rule
 static void print_rules(const BlendReport *report, FILE *out)
 {
     char count[SUMMARY_NUMBER], text[BLEND_TEXT];
-    fprintf(out, "\n%-12s %-28s %-31s %-14s %s\n", "rule", "source", "allowed", "largest seen",
+    fprintf(out, "\n%-12s %-28s %-33s %-13s %s\n", "rule", "source", "allowed", "largest seen",
             "outside");
     for (int i = 0; i < BLEND_RULES; i++) {
         const BlendRuleTally *rule = &report->rules[i];
         if (!rule->applies)
             continue;
-        fprintf(out, "%-12s %-28s %-31s %-14s ", rule->info->name, rule->info->source,
+        fprintf(out, "%-12s %-28s %-33s %-13s ", rule->info->name, rule->info->source,
                 rule->info->allowed, largest(report, rule, text));
         if (!rule->judged)
             fputs("no value", out);

@@ -16,7 +16,8 @@ enum {
     FITS = 8,       /* arithmetics without a name that are kept after that: the simplest */
     /* An arithmetic that differs in a sixteenth of all values after so many vectors is no
      * candidate any more. */
-    ENOUGH = 1 << 18,
+    ENOUGH = 1 << 17,
+    QUICK = 1 << 13,
     FAR_OFF = 16
 };
 
@@ -141,17 +142,18 @@ static Result compare_task(const BlendCheck *check, BlendCandidate *candidate,
 {
     bool against = check->report.has_against && candidate == check->report.candidates;
     bool fitted = is_fit(&check->report, candidate);
-    bool stopped = candidate->vectors < check->report.vectors;
-    if (candidate->refused || stopped || (fitted && differs(candidate, UINT64_MAX)))
+    if (candidate->refused || candidate->stopped)
         return RESULT_OK;
     size_t step = fitted && candidate->vectors == 0 ? STEP : CHUNK;
     for (size_t at = 0; at < check->count; at += step) {
         size_t count = check->count - at < step ? check->count - at : step;
         compare_some(check, candidate, at, count, pixels);
         if (fitted && differs(candidate, UINT64_MAX))
-            break;
+            candidate->stopped = true;
         if (!fitted && candidate->vectors >= ENOUGH && !against && !check->desc.every &&
             differs(candidate, FAR_OFF))
+            candidate->stopped = true;
+        if (candidate->stopped)
             break;
     }
     return RESULT_OK;
@@ -267,6 +269,20 @@ static void drop_unfit(BlendReport *report, size_t most)
     report->count = kept;
 }
 
+/* Where a right arithmetic gives all so far: stops those that do not, or have no name. */
+static void stop_others(BlendReport *report)
+{
+    size_t best = blend_best_whole(report);
+    const ArithmeticInfo *info = report->candidates[best].info;
+    if (!info || info->wrong || blend_unexplained(report) > 0)
+        return;
+    for (size_t i = 0; i < report->count; i++) {
+        BlendCandidate *one = &report->candidates[i];
+        one->stopped |= !one->info || one->groups[GROUP_COLOR].differing > 0 ||
+                        one->groups[GROUP_ALPHA].differing > 0;
+    }
+}
+
 static Result add_some(BlendCheck *check, uint64_t index, size_t count, const float (*source)[4],
                        const unsigned char *destination, const unsigned char *results)
 {
@@ -282,6 +298,8 @@ static Result add_some(BlendCheck *check, uint64_t index, size_t count, const fl
     for (int i = 0; i < RULE_PARTS; i++)
         blend_rules_merge(check->report.rules, check->parts[i]);
     check->report.vectors += count;
+    if (result == RESULT_OK && check->desc.quick && check->report.vectors >= QUICK)
+        stop_others(&check->report);
     return result;
 }
 

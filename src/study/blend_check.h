@@ -46,6 +46,7 @@ typedef struct BlendCandidate {
     BlendExample simplest; /* where it differs: least complexity, then first */
     BlendExample *worst;   /* where it differs most; as many as were asked for */
     int worst_count;
+    bool stopped; /* not compared any more */
 } BlendCandidate;
 
 typedef enum BlendVerdict {
@@ -64,6 +65,8 @@ typedef struct BlendCheckDesc {
     int worst;                 /* examples kept of each arithmetic */
     int threads;               /* as for pool_create */
     bool every;                /* count differences of all to the end */
+    bool quick; /* once a right named arithmetic gives all values of some thousand vectors, go on
+                 * only with those that give all */
 } BlendCheckDesc;
 
 typedef struct BlendReport {

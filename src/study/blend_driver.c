@@ -130,6 +130,7 @@ static Result open_run(Run *run)
     BlendCheckDesc desc = {.format = run->desc->format,
                            .equation = run->desc->equation,
                            .worst = run->desc->worst,
+                           .quick = true,
                            .threads = run->desc->threads};
     run->source = memory_array(EXPERIMENT_TEXELS, sizeof *run->source);
     run->before = memory_array(EXPERIMENT_TEXELS, sizeof *run->before);

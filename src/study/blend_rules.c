@@ -60,7 +60,7 @@ static const BlendRuleInfo infos[BLEND_RULES] = {
     [RULE_DEQP_VULKAN] = {"dEQP, Vulkan", "vktPipelineBlendTests.cpp",
                           "4 codes; half 0.005; float 1e-5", API_SUITE},
     [RULE_DEQP_GLES] = {"dEQP, GLES 3", "es3fBlendTests.cpp", "4 codes", API_SUITE},
-    [RULE_PIGLIT] = {"piglit", "piglit_set_tolerance_for_bits", "3 / 256", API_SUITE},
+    [RULE_PIGLIT] = {"piglit", "gl-1.0-blend-func", "3 / 256", API_SUITE},
 };
 
 const char *blend_api_name(BlendApi api)
