@@ -35,6 +35,8 @@ Result vectors_check(const VectorSpec *spec)
     if (spec->set == VECTORS_SEQUENCES && info->channels != 4)
         return result_fail(RESULT_BAD_INPUT, "%s of %s: expected a format with alpha", name,
                            info->name);
+    if (spec->seed > VECTORS_NUMBER_MAX || spec->count > VECTORS_NUMBER_MAX)
+        return result_fail(RESULT_BAD_INPUT, "%s vectors: a seed or index above 2^53 - 1", name);
     return RESULT_OK;
 }
 

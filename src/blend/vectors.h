@@ -22,6 +22,9 @@ enum {
     VECTORS_VERSION = 1
 };
 
+/* Seeds and indices: what a double, as of JSON, holds. */
+#define VECTORS_NUMBER_MAX (((int64_t)1 << 53) - 1)
+
 typedef enum VectorSet {
     VECTORS_EXHAUSTIVE = 0, /* of unorm formats: 2^24 vectors */
     VECTORS_DIRECTED,       /* all triples of the format's special values (zeros of both signs,
@@ -41,7 +44,7 @@ typedef struct VectorSpec {
 
 const char *vectors_set_name(VectorSet set); /* "exhaustive"; static */
 
-/* BAD_INPUT with a message where there is no such set of the format. */
+/* BAD_INPUT with a message where there is no such set of the format, or a number is too great. */
 Result vectors_check(const VectorSpec *spec);
 
 uint64_t vectors_count(const VectorSpec *spec);

@@ -12,9 +12,9 @@ enum {
  * whatever its bits. Returns the place of the final 0. */
 char *hexfloat_print(float x, char out[HEXFLOAT_TEXT]);
 
-/* The whole of text as a float: [+-] and hexadecimal digits with at most one point, after "0x", with
- * or without exponent "p[+-]N"; or "inf", "infinity", "nan", "nan(...)", in any case. False where it
- * is neither, or is no float exactly. */
+/* The whole of text as a float: [+-] and hexadecimal digits with at most one point, after "0x",
+ * with or without exponent "p[+-]N"; or "inf", "infinity", "nan", "nan(...)", in any case. False
+ * where it is neither, or is no float exactly. */
 bool hexfloat_parse(const char *text, float *out);
 
 #endif
