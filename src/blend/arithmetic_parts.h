@@ -51,6 +51,41 @@ uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *
                              PixelFormat format, const float source[4], const void *pixel,
                              int channel, BlendSteps *steps);
 
+/* x·y / (2^bits − 1) as the formula says; of integers of that many bits, at most 16. */
+static inline int64_t arithmetic_code_product(CodeProduct product, int bits, int64_t x, int64_t y)
+{
+    int64_t t = x * y, half = (int64_t)1 << (bits - 1), most = 2 * half - 1;
+    switch (product) {
+    case CODES_NEAREST:
+        t += half;
+        return (t + (t >> bits)) >> bits;
+    case CODES_DRIVER:
+        t += t >> bits;
+        return (t + half) >> bits;
+    case CODES_FLOOR:
+        return t / most;
+    case CODES_SHIFT:
+        return t >> bits;
+    case CODES_SHIFT_ROUND:
+        return (t + half) >> bits;
+    case CODES_SHIFT_MOST:
+        return (t + most) >> bits;
+    case CODES_SHIFT_STRETCH:
+        return x * (y + (y >> (bits - 1))) >> bits;
+    case CODES_SHIFT_PLUS:
+        return x * (y + 1) >> bits;
+    case CODES_RECIPROCAL:
+        return t * (most + 2) >> (2 * bits);
+    }
+    return 0;
+}
+
+/* arithmetic_blend of unorm formats in integers; false, and nothing done, where the arithmetic is
+ * not one of integers without mistakes, or exact. */
+bool arithmetic_codes_blend(const Arithmetic *arithmetic, const BlendEquation *equation,
+                            PixelFormat format, size_t count, const float (*source)[4],
+                            void *pixels);
+
 /* ---- mistakes; without any, what they are given comes back ---- */
 
 typedef enum EarlyOut {

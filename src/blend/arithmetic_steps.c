@@ -73,36 +73,6 @@ static double taken(const Arithmetic *a, const FormatInfo *info, double x)
     return rounded(a, clamps ? clamped(x) : x);
 }
 
-static double code_product(const Arithmetic *a, double most, double x, double y)
-{
-    int bits = most > 255.0 ? 16 : 8;
-    uint64_t n = (uint64_t)most, p = (uint64_t)x, q = (uint64_t)y, t = p * q;
-    uint64_t half = (uint64_t)1 << (bits - 1);
-    switch (a->product) {
-    case CODES_NEAREST:
-        t += half;
-        return (double)((t + (t >> bits)) >> bits);
-    case CODES_DRIVER:
-        t += t >> bits;
-        return (double)((t + half) >> bits);
-    case CODES_FLOOR:
-        return (double)(t / n);
-    case CODES_SHIFT:
-        return (double)(t >> bits);
-    case CODES_SHIFT_ROUND:
-        return (double)((t + half) >> bits);
-    case CODES_SHIFT_MOST:
-        return (double)((t + n) >> bits);
-    case CODES_SHIFT_STRETCH:
-        return (double)((p * (q + (q >> (bits - 1)))) >> bits);
-    case CODES_SHIFT_PLUS:
-        return (double)((p * (q + 1)) >> bits);
-    case CODES_RECIPROCAL:
-        return (double)((t * (n + 2)) >> (2 * bits));
-    }
-    return 0.0;
-}
-
 /* An operand times its factor. Of codes nobody multiplies by the factor 1. */
 static double factored(const Arithmetic *a, const ChannelOperands *o, BlendFactor factor,
                        bool alpha, double x, double y)
@@ -111,7 +81,8 @@ static double factored(const Arithmetic *a, const ChannelOperands *o, BlendFacto
         return multiply(a, x, y);
     if (factor == FACTOR_ONE || (factor == FACTOR_SRC_ALPHA_SATURATE && alpha))
         return x;
-    return code_product(a, o->one, x, y);
+    return (double)arithmetic_code_product(a->product, o->one > 255.0 ? 16 : 8, (int64_t)x,
+                                           (int64_t)y);
 }
 
 static double factor_value(const Arithmetic *a, const ChannelOperands *o, FactorBase f)

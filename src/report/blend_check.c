@@ -125,6 +125,8 @@ static const char *largest(const BlendReport *report, const BlendRuleTally *rule
     bool real = rule->info->api == API_SUITE && !format_info(report->format)->unorm_max;
     if (!rule->judged)
         snprintf(out, BLEND_TEXT, "-");
+    else if (rule->info->allowed[0] == 'n') /* a count */
+        snprintf(out, BLEND_TEXT, "-");
     else if (!(rule->largest_real < (double)INFINITY))
         snprintf(out, BLEND_TEXT, "not finite");
     else if (real)
@@ -178,7 +180,7 @@ static Result print_twins(const BlendReport *report, size_t best, FILE *out)
         fprintf(out, ": not on %s vector %llu, %s: ", vectors_set_name(example->set),
                 (unsigned long long)example->index, blend_channel_name(example->channel));
         fputs("\n      ", out);
-        blend_print_operands(&report->equation, report->format, example, out);
+        blend_print_operands(&report->equation, report->format, example, true, out);
         fprintf(out, "; gives %s", blend_text_bits(report->format, example->got, text));
         fprintf(out, ", not %s\n", blend_text_bits(report->format, example->expected, text));
         if (i + 1 < count)

@@ -42,10 +42,10 @@ const char *blend_text_ulp(PixelFormat format, uint32_t ulp, char out[BLEND_TEXT
 }
 
 void blend_print_operands(const BlendEquation *equation, PixelFormat format,
-                          const BlendExample *example, FILE *out)
+                          const BlendExample *example, bool whole, FILE *out)
 {
     char text[BLEND_TEXT];
-    BlendCase one = {equation, format, example->channel, example->source, example->pixel};
+    BlendCase one = {equation, format, example->channel, example->source, example->pixel, whole};
     BlendOperands used = blend_case_operands(&one);
     fprintf(out, "source %s", blend_text_source(format, example->source[example->channel], text));
     if (used.source_alpha)
@@ -76,8 +76,8 @@ static void print_steps(const BlendReport *report, const char *name, const Arith
 {
     BlendSteps all[4];
     char a[BLEND_TEXT], b[BLEND_TEXT], c[BLEND_TEXT];
-    BlendCase one = {&report->equation, report->format, example->channel, example->source,
-                     example->pixel};
+    BlendCase one = {&report->equation, report->format, example->channel,
+                     example->source,   example->pixel, false};
     BlendFunc func = blend_case_terms(&one).func;
     arithmetic_steps(arithmetic, &report->equation, report->format, example->source, example->pixel,
                      all);
@@ -104,7 +104,7 @@ void blend_print_example(const BlendReport *report, const char *name, const Arit
     char text[BLEND_TEXT];
     fprintf(out, "  %s vector %llu, %s: ", vectors_set_name(example->set),
             (unsigned long long)example->index, blend_channel_name(example->channel));
-    blend_print_operands(&report->equation, report->format, example, out);
+    blend_print_operands(&report->equation, report->format, example, false, out);
     fprintf(out, "\n    got %s, ", blend_text_bits(report->format, example->got, text));
     print_hex(report->format, example->got, out);
     fprintf(out, "; expected %s, ", blend_text_bits(report->format, example->expected, text));

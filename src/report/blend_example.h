@@ -20,9 +20,9 @@ const char *blend_text_source(PixelFormat format, float x, char out[BLEND_TEXT])
 const char *blend_text_ulp(PixelFormat format, uint32_t ulp, char out[BLEND_TEXT]);
 const char *blend_channel_name(int channel); /* "red"; static */
 
-/* "source 128, alpha 255, before 1": the operands that the channel has. */
+/* "source 128, alpha 255, before 1": the operands that the channel has; whole: and both alphas. */
 void blend_print_operands(const BlendEquation *equation, PixelFormat format,
-                          const BlendExample *example, FILE *out);
+                          const BlendExample *example, bool whole, FILE *out);
 
 /* Where the vector is from, its operands and bits, and how the named arithmetic comes to what it
  * expects, step by step. */

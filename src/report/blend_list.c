@@ -63,11 +63,11 @@ static void print_vector(const BlendWrong *row, FILE *out)
     char a[BLEND_TEXT], b[BLEND_TEXT];
     fprintf(out, "    %-8s %s, %s: ", format_info(row->format)->name, equation->name,
             blend_channel_name(example->channel));
-    blend_print_operands(&equation->equation, row->format, example, out);
+    blend_print_operands(&equation->equation, row->format, example, true, out);
     fprintf(out, "\n             gives %s, not %s%s\n",
             blend_text_bits(row->format, example->got, a),
             blend_text_bits(row->format, example->expected, b),
-            row->alone ? "" : " (as exact; a right arithmetic gives it, too)");
+            row->alone ? "" : " as exact, but as another right one");
 }
 
 /* One row for each format, of the equation with the simplest vector. */

@@ -37,6 +37,8 @@ BlendOperands blend_case_operands(const BlendCase *one)
 {
     BlendOperands used = {false, false};
     BlendTerms terms = blend_case_terms(one);
+    if (one->whole && one->channel != 3)
+        return (BlendOperands){true, format_info(one->format)->channels == 4};
     if (terms.func == BLEND_FUNC_MIN || terms.func == BLEND_FUNC_MAX || one->channel == 3)
         return used;
     add_factor(terms.source, &used);

@@ -16,6 +16,7 @@ typedef struct BlendCase {
     int channel;         /* a stored one */
     const float *source; /* 4 */
     const void *pixel;   /* the destination */
+    bool whole;          /* other arithmetics than the equation's may read both alphas */
 } BlendCase;
 
 /* The factors and the function of the case's channel. */
@@ -26,8 +27,9 @@ typedef struct BlendTerms {
 
 BlendTerms blend_case_terms(const BlendCase *one);
 
-/* Which operands the channel's result depends on, by its factors. The channel's own source and
- * destination always count: their infinities and NaN come through a factor of 0. */
+/* Which operands the channel's result depends on, by its factors; or both alphas, where whole. The
+ * channel's own source and destination always count: their infinities and NaN come through a factor
+ * of 0. */
 typedef struct BlendOperands {
     bool source_alpha, destination_alpha; /* beside the channel's own values */
 } BlendOperands;

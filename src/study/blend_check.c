@@ -62,8 +62,12 @@ static void note(const BlendCheck *check, BlendCandidate *candidate, size_t i, i
                  BlendExample *example)
 {
     size_t bytes = format_pixel_bytes(check->desc.format);
-    BlendCase one = {&check->report.equation, check->desc.format, channel, check->source[i],
-                     check->destination + i * bytes};
+    BlendCase one = {&check->report.equation,
+                     check->desc.format,
+                     channel,
+                     check->source[i],
+                     check->destination + i * bytes,
+                     false};
     bool first =
         candidate->groups[GROUP_COLOR].differing + candidate->groups[GROUP_ALPHA].differing == 1;
     example->set = check->set;
@@ -168,8 +172,12 @@ static Result judge_task(const BlendCheck *check, uint32_t part)
     size_t from = check->count * part / RULE_PARTS, to = check->count * (part + 1) / RULE_PARTS;
     for (size_t i = from; i < to; i++)
         for (int k = 0; k < info->channels; k++) {
-            BlendCase one = {&check->report.equation, check->desc.format, k, check->source[i],
-                             check->destination + i * bytes};
+            BlendCase one = {&check->report.equation,
+                             check->desc.format,
+                             k,
+                             check->source[i],
+                             check->destination + i * bytes,
+                             false};
             uint32_t got = format_bits(check->desc.format, check->results + i * bytes, k);
             blend_rules_add(&one, (BlendPlace){check->set, check->index + i}, got,
                             check->parts[part]);
@@ -249,15 +257,30 @@ Result blend_check_open(const BlendCheckDesc *desc, BlendCheck **out)
     return list_candidates(check);
 }
 
-/* Those without a name stay only where they explain something, and the first `most` of them. */
-static void drop_unfit(BlendReport *report, size_t most)
+/* Whether the candidate explains a group that no named one does. */
+static bool adds(const BlendReport *report, size_t candidate)
+{
+    for (int group = 0; group < GROUP_COUNT; group++) {
+        bool named = false;
+        for (size_t i = 0; i < report->count && !named; i++)
+            named = report->candidates[i].info && blend_explains(report, i, (BlendGroup)group);
+        if (!named && blend_explains(report, candidate, (BlendGroup)group))
+            return true;
+    }
+    return false;
+}
+
+/* Those without a name stay only where they explain something (named: that no named one explains),
+ * and the first `most` of them. */
+static void drop_unfit(BlendReport *report, size_t most, bool named)
 {
     size_t kept = 0, fits = 0;
     for (size_t i = 0; i < report->count; i++) {
         BlendCandidate *candidate = &report->candidates[i];
         bool fit = is_fit(report, candidate);
-        if (fit && (fits == most || (!blend_explains(report, i, GROUP_COLOR) &&
-                                     !blend_explains(report, i, GROUP_ALPHA)))) {
+        if (fit && (fits == most || (named && !adds(report, i)) ||
+                    (!blend_explains(report, i, GROUP_COLOR) &&
+                     !blend_explains(report, i, GROUP_ALPHA)))) {
             free(candidate->worst);
             continue;
         }
@@ -312,7 +335,7 @@ Result blend_check_add(BlendCheck *check, VectorSet set, uint64_t index, size_t 
     if (check->report.vectors == 0) {
         first = count < FIRST ? count : FIRST;
         result = add_some(check, index, first, source, destination, results);
-        drop_unfit(&check->report, FITS);
+        drop_unfit(&check->report, FITS, false);
     }
     if (result != RESULT_OK || first == count)
         return result;
@@ -323,7 +346,7 @@ Result blend_check_add(BlendCheck *check, VectorSet set, uint64_t index, size_t 
 
 void blend_check_finish(BlendCheck *check, BlendReport *out)
 {
-    drop_unfit(&check->report, FITS);
+    drop_unfit(&check->report, FITS, true);
     *out = check->report;
     check->report.candidates = NULL;
     check->report.count = 0;

@@ -106,8 +106,12 @@ bool blend_probe_apart(const BlendProbe *probe, const unsigned char *one, size_t
         if (memcmp(one + i * bytes, others[0] + i * bytes, bytes) == 0)
             continue;
         for (int k = 0; k < info->channels; k++) {
-            BlendCase here = {&probe->equation, probe->format, k, probe->source[i],
-                              probe->destination + i * bytes};
+            BlendCase here = {&probe->equation,
+                              probe->format,
+                              k,
+                              probe->source[i],
+                              probe->destination + i * bytes,
+                              true};
             int complexity = blend_case_complexity(&here);
             if ((found != SIZE_MAX && complexity >= least) ||
                 !is_apart(probe, one, count, others, i, k))

@@ -44,6 +44,10 @@ static Result show(const BlendProbe *probe, const Right *right, BlendWrong *row)
         return RESULT_NO_MEMORY;
     row->alone = blend_probe_apart(probe, pixels, right->count, others, &row->example);
     row->shown = row->alone || blend_probe_apart(probe, pixels, 1, others, &row->example);
+    for (size_t i = 1; i < right->count && row->shown && !row->alone; i++) {
+        BlendExample ignored;
+        row->shown = blend_probe_apart(probe, pixels, 1, &others[i], &ignored);
+    }
     free(pixels);
     return RESULT_OK;
 }

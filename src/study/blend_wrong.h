@@ -9,9 +9,10 @@ typedef struct BlendWrong {
     const ArithmeticInfo *info;
     PixelFormat format;
     EquationId equation;
-    bool alone; /* one vector is none of the right arithmetics'; else it is not the exact result */
-    bool shown; /* there is a vector of either kind */
-    BlendExample example; /* expected: the exact result */
+    bool shown; /* it differs from every right arithmetic */
+    bool alone; /* on one vector from all of them at once: then that is the example; else one where
+                 * it differs from the exact result */
+    BlendExample example; /* expected: the exact result; if shown */
 } BlendWrong;
 
 typedef struct BlendWrongList {
