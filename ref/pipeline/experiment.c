@@ -80,13 +80,9 @@ static void blends(bool fused, const Experiment *experiment, uint32_t *out)
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         unsigned char pixel[16];
         format_store(experiment->format, experiment->b[i], pixel);
-<<<<<<< HEAD
         if (experiment->before)
             put_codes(experiment->format, pixel, &experiment->before[4 * i]);
-        blend_pixel(&experiment->equation, fused, experiment->format, experiment->a[i], pixel);
-=======
         blend_pixels(&experiment->equation, fused, experiment->format, 1, &experiment->a[i], pixel);
->>>>>>> 05a84b2696585de276700fd85b45dbf1ef1ac859
         put_codes(experiment->format, pixel, &out[4 * i]);
     }
 }

@@ -52,6 +52,11 @@ static int code_complexity(uint32_t code, uint32_t most)
     return code == 0 ? 0 : code == most ? 1 : 1 + __builtin_popcount(code);
 }
 
+static int number_complexity(float x)
+{
+    return inputs_complexity(x) + (op_bits(x) == 0x80000000u ? 8 : 0);
+}
+
 static int source_complexity(const FormatInfo *info, float x)
 {
     if (info->unorm_max && x >= 0.0f && x <= 1.0f) {
@@ -59,7 +64,7 @@ static int source_complexity(const FormatInfo *info, float x)
         if (fabs(code - whole) < 1e-6 * whole + 1e-9) /* code / greatest as a float */
             return code_complexity((uint32_t)whole, info->unorm_max);
     }
-    return inputs_complexity(x);
+    return number_complexity(x);
 }
 
 static int destination_complexity(const BlendCase *one, int channel)
@@ -68,7 +73,7 @@ static int destination_complexity(const BlendCase *one, int channel)
     uint32_t bits = format_bits(one->format, one->pixel, channel);
     if (info->unorm_max)
         return code_complexity(bits, info->unorm_max);
-    return inputs_complexity(info->kind == KIND_HALF ? half_to_float((uint16_t)bits)
+    return number_complexity(info->kind == KIND_HALF ? half_to_float((uint16_t)bits)
                                                      : op_from_bits(bits));
 }
 

@@ -38,7 +38,7 @@ BlendOperands blend_case_operands(const BlendCase *one);
 
 /* How simple the channel's operands are: the sum of inputs_complexity over those that it depends
  * on, where a code of a unorm format counts 0 for 0, 1 for the greatest code, and else 1 + its set
- * bits; infinities and NaN count INPUTS of 33 and more. The smallest vector of a set is the one
+ * bits; -0 counts 8, infinities and NaN 33 and more. The smallest vector of a set is the one
  * with the least sum, then the first. */
 int blend_case_complexity(const BlendCase *one);
 
