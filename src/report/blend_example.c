@@ -41,20 +41,34 @@ const char *blend_text_ulp(PixelFormat format, uint32_t ulp, char out[BLEND_TEXT
     return out;
 }
 
+/* Shorter than blend_text_source and blend_text_bits. */
+static const char *brief(PixelFormat format, bool bits, uint32_t stored, float source,
+                         char out[BLEND_TEXT])
+{
+    bool code = format_info(format)->unorm_max != 0;
+    if (bits && code)
+        return blend_text_bits(format, stored, out);
+    if (code)
+        blend_text_source(format, source, out);
+    else
+        text_float(bits ? blend_case_value(format, stored) : (double)source, out);
+    return out;
+}
+
 void blend_print_operands(const BlendEquation *equation, PixelFormat format,
                           const BlendExample *example, bool whole, FILE *out)
 {
     char text[BLEND_TEXT];
     BlendCase one = {equation, format, example->channel, example->source, example->pixel, whole};
     BlendOperands used = blend_case_operands(&one);
-    fprintf(out, "source %s", blend_text_source(format, example->source[example->channel], text));
+    fprintf(out, "source %s", brief(format, false, 0, example->source[example->channel], text));
     if (used.source_alpha)
-        fprintf(out, ", source alpha %s", blend_text_source(format, example->source[3], text));
-    fprintf(out, ", before %s",
-            blend_text_bits(format, format_bits(format, example->pixel, example->channel), text));
+        fprintf(out, ", source alpha %s", brief(format, false, 0, example->source[3], text));
+    uint32_t before = format_bits(format, example->pixel, example->channel);
+    fprintf(out, ", before %s", brief(format, true, before, 0.0f, text));
     if (used.destination_alpha)
         fprintf(out, ", alpha before %s",
-                blend_text_bits(format, format_bits(format, example->pixel, 3), text));
+                brief(format, true, format_bits(format, example->pixel, 3), 0.0f, text));
 }
 
 static void print_hex(PixelFormat format, uint32_t bits, FILE *out)

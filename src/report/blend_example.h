@@ -20,7 +20,8 @@ const char *blend_text_source(PixelFormat format, float x, char out[BLEND_TEXT])
 const char *blend_text_ulp(PixelFormat format, uint32_t ulp, char out[BLEND_TEXT]);
 const char *blend_channel_name(int channel); /* "red"; static */
 
-/* "source 128, alpha 255, before 1": the operands that the channel has; whole: and both alphas. */
+/* "source 128, alpha 255, before 1": the operands that the channel has; whole: and both alphas.
+ * Floats in decimal alone, which reads back as the same number. */
 void blend_print_operands(const BlendEquation *equation, PixelFormat format,
                           const BlendExample *example, bool whole, FILE *out);
 

@@ -61,7 +61,7 @@ static void print_vector(const BlendWrong *row, FILE *out)
     const EquationInfo *equation = equation_info(row->equation);
     const BlendExample *example = &row->example;
     char a[BLEND_TEXT], b[BLEND_TEXT];
-    fprintf(out, "    %-8s %s, %s: ", format_info(row->format)->name, equation->name,
+    fprintf(out, "    %-8s %s, %s\n             ", format_info(row->format)->name, equation->name,
             blend_channel_name(example->channel));
     blend_print_operands(&equation->equation, row->format, example, true, out);
     fprintf(out, "\n             gives %s, not %s%s\n",

@@ -12,7 +12,7 @@ enum {
     CHUNK = 4096,   /* vectors that a task takes at a time */
     RULE_PARTS = 8, /* tasks for the rules */
     STEP = 64,      /* vectors between looks whether an arithmetic without a name still fits */
-    FIRST = 1024,   /* vectors after which most arithmetics without a name are out */
+    FIRST = 256,   /* vectors after which most arithmetics without a name are out */
     FITS = 8,       /* arithmetics without a name that are kept after that: the simplest */
     /* An arithmetic that differs in a sixteenth of all values after so many vectors is no
      * candidate any more. */
