@@ -75,7 +75,7 @@ static Result run_one(GlRun *run, PixelFormat format, const BlendEquation *equat
     return RESULT_OK;
 }
 
-static void begin_progress(const BlendCheckCommand *command)
+static uint64_t count_vectors(const BlendCheckCommand *command)
 {
     uint64_t all = 0;
     for (int i = 0; i < BLEND_FORMATS; i++)
@@ -83,14 +83,14 @@ static void begin_progress(const BlendCheckCommand *command)
             BlendDriverDesc desc = describe(command, blend_formats[i], equation_at(command, k));
             all += blend_driver_vectors(&desc);
         }
-    progress_before = 0;
-    progress_begin("vectors", all);
+    return all;
 }
 
 static Result run_all(GlRun *run)
 {
     Result result = RESULT_OK;
-    begin_progress(run->command);
+    progress_before = 0;
+    progress_begin("vectors", count_vectors(run->command));
     report_blend_row_head(stdout);
     for (int i = 0; i < BLEND_FORMATS; i++)
         for (int k = 0;
@@ -98,8 +98,6 @@ static Result run_all(GlRun *run)
              k++)
             result = run_one(run, blend_formats[i], equation_at(run->command, k));
     progress_end();
-    if (result == RESULT_OK && run->count == 0)
-        result = result_fail(RESULT_BAD_INPUT, "--set: expected a set that one of the formats has");
     return result;
 }
 
@@ -149,6 +147,8 @@ static Result check_fma(const BlendCheckCommand *command, FusesMode mode)
 
 Result blend_check_gl(const BlendCheckCommand *command, int *code)
 {
+    if (count_vectors(command) == 0)
+        return result_fail(RESULT_BAD_INPUT, "--set: expected a set that one of the formats has");
     GlRun *run = memory_array(1, sizeof *run);
     if (!run)
         return RESULT_NO_MEMORY;

@@ -137,6 +137,22 @@ static const char *largest(const BlendReport *report, const BlendRuleTally *rule
     return out;
 }
 
+/* The value that is farthest outside the rule. */
+static void print_outside(const BlendReport *report, const BlendRuleTally *rule, FILE *out)
+{
+    char text[BLEND_TEXT];
+    uint32_t most = format_info(report->format)->unorm_max;
+    BlendExample example = {.set = rule->set, .index = rule->index, .channel = rule->channel};
+    memcpy(example.source, rule->source, sizeof example.source);
+    memcpy(example.pixel, rule->pixel, sizeof example.pixel);
+    fprintf(out, "outside %s, %s: %s vector %llu, %s\n  ", rule->info->name, rule->info->source,
+            vectors_set_name(rule->set), (unsigned long long)rule->index,
+            blend_channel_name(rule->channel));
+    blend_print_operands(&report->equation, report->format, &example, false, out);
+    fprintf(out, "\n  got %s, exactly %.9g\n", blend_text_bits(report->format, rule->got, text),
+            most ? rule->exact * most : rule->exact);
+}
+
 static void print_rules(const BlendReport *report, FILE *out)
 {
     char count[SUMMARY_NUMBER], text[BLEND_TEXT];
@@ -154,6 +170,9 @@ static void print_rules(const BlendReport *report, FILE *out)
             fputs(rule->outside ? summary_count(rule->outside, count) : "none", out);
         fputc('\n', out);
     }
+    for (int i = 0; i < BLEND_RULES; i++)
+        if (report->rules[i].applies && report->rules[i].outside)
+            print_outside(report, &report->rules[i], out);
     fputs(
         "Largest: off the real result of the operands, in units of the format at the greatest of\n"
         "operands, products and result. Not judged: what a rule says nothing of (infinities, NaN,\n"
@@ -273,7 +292,7 @@ Result report_blend_print(const ReportBlend *blend, FILE *out)
 
 void report_blend_row_head(FILE *out)
 {
-    fprintf(out, "%-8s %-20s %12s %-34s %12s %s\n", "format", "equation", "vectors", "arithmetic",
+    fprintf(out, "%-8s %-18s %12s %-24s %12s %s\n", "format", "equation", "vectors", "arithmetic",
             "unexplained", "rules");
 }
 
@@ -284,15 +303,14 @@ void report_blend_row(const BlendReport *report, FILE *out)
     report_blend_name(report, name);
     equation_print(&report->equation, equation);
     bool nearest = blend_unexplained(report) > 0;
-    fprintf(out, "%-8s %-20s %12s %s%-*s %12s ", format_info(report->format)->name, equation,
-            summary_count(report->vectors, count), nearest ? "nearest " : "", nearest ? 26 : 34,
+    fprintf(out, "%-8s %-18s %12s %s%-*s %12s ", format_info(report->format)->name, equation,
+            summary_count(report->vectors, count), nearest ? "nearest " : "", nearest ? 16 : 24,
             name, summary_count(blend_unexplained(report), unexplained));
     const char *separator = "";
     for (int api = 0; api < API_SUITE; api++)
         if (blend_rules_broken(report->rules, (BlendApi)api)) {
-            fprintf(out, "%s%s", *separator ? separator : "outside ",
-                    blend_api_name((BlendApi)api));
-            separator = ", ";
+            fprintf(out, "%s%s", *separator ? separator : "not ", blend_api_name((BlendApi)api));
+            separator = " ";
         }
     fputs(*separator ? "\n" : "within\n", out);
 }

@@ -20,12 +20,16 @@ const char *blend_text_bits(PixelFormat format, uint32_t bits, char out[BLEND_TE
     return out;
 }
 
-const char *blend_text_source(PixelFormat format, float x, char out[BLEND_TEXT])
+static bool is_code(PixelFormat format, float x)
 {
     uint32_t most = format_info(format)->unorm_max;
-    double code = nearbyint((double)x * most);
-    if (most && x >= 0.0f && x <= 1.0f && x == (float)(code / most))
-        snprintf(out, BLEND_TEXT, "%.0f", code);
+    return most && x >= 0.0f && x <= 1.0f && x == (float)(nearbyint((double)x * most) / most);
+}
+
+const char *blend_text_source(PixelFormat format, float x, char out[BLEND_TEXT])
+{
+    if (is_code(format, x))
+        snprintf(out, BLEND_TEXT, "%.0f", nearbyint((double)x * format_info(format)->unorm_max));
     else
         text_both((double)x, out);
     return out;
@@ -48,10 +52,11 @@ static const char *brief(PixelFormat format, bool bits, uint32_t stored, float s
     bool code = format_info(format)->unorm_max != 0;
     if (bits && code)
         return blend_text_bits(format, stored, out);
-    if (code)
+    double number = bits ? blend_case_value(format, stored) : (double)source;
+    if (code && is_code(format, source))
         blend_text_source(format, source, out);
     else
-        text_float(bits ? blend_case_value(format, stored) : (double)source, out);
+        text_float(number, out);
     return out;
 }
 
@@ -76,9 +81,12 @@ static void print_hex(PixelFormat format, uint32_t bits, FILE *out)
     fprintf(out, "0x%0*x", 2 * format_info(format)->channel_bytes, bits);
 }
 
+/* Of exact arithmetic some numbers are none of double: NaN, though nothing else is. */
 static const char *number(const BlendSteps *steps, double x, char out[BLEND_TEXT])
 {
-    if (steps->codes)
+    if (isnan(x) && !isnan(steps->source) && !isnan(steps->destination))
+        snprintf(out, BLEND_TEXT, "(no double)");
+    else if (steps->codes)
         snprintf(out, BLEND_TEXT, "%.0f", x);
     else
         text_both(x, out);
@@ -104,9 +112,7 @@ static void print_steps(const BlendReport *report, const char *name, const Arith
                 number(steps, steps->destination_factor, b),
                 number(steps, steps->destination_product, c));
     }
-    fprintf(out, "      %s", equation_func_name(func));
-    if (!isnan(steps->sum) || arithmetic->kind != ARITHMETIC_EXACT)
-        fprintf(out, " %s", number(steps, steps->sum, a));
+    fprintf(out, "      %s: %s", equation_func_name(func), number(steps, steps->sum, a));
     fprintf(out, ", stored %s, ", blend_text_bits(report->format, steps->stored, a));
     print_hex(report->format, steps->stored, out);
     fputc('\n', out);

@@ -180,12 +180,12 @@ START_TEST(test_color_and_alpha)
     blend("separate", EQUATION_OVER, FORMAT_RGBA16F);
     static uint16_t colors[VECTORS][4];
     memcpy(colors, results, sizeof colors);
-    blend("separate-truncated", EQUATION_OVER, FORMAT_RGBA16F);
+    blend("half", EQUATION_OVER, FORMAT_RGBA16F);
     for (size_t i = 0; i < VECTORS; i++)
         memcpy(results + 8 * i, colors[i], 6);
     check(EQUATION_OVER, FORMAT_RGBA16F, 2, VECTORS);
     report_blend_name(&report, name);
-    ck_assert_str_eq(name, "colour separate, alpha separate-truncated");
+    ck_assert_str_eq(name, "colour separate, alpha half");
     ck_assert_int_eq(blend_verdict(&report, API_COUNT), BLEND_NAMED);
     ck_assert_uint_eq(blend_unexplained(&report), 0);
     blend_report_free(&report);
@@ -227,8 +227,8 @@ START_TEST(test_worst_in_order)
         ck_assert(one.worst[i].ulp < one.worst[i - 1].ulp ||
                   (one.worst[i].ulp == one.worst[i - 1].ulp &&
                    one.worst[i].complexity >= one.worst[i - 1].complexity));
-    ck_assert_uint_eq(one.worst[0].ulp, one.groups[GROUP_COLOR].max_ulp);
-    ck_assert_uint_gt(one.worst[0].ulp, one.worst[3].ulp - 1);
+    uint32_t color = one.groups[GROUP_COLOR].max_ulp, alpha = one.groups[GROUP_ALPHA].max_ulp;
+    ck_assert_uint_eq(one.worst[0].ulp, color > alpha ? color : alpha);
     BlendExample simplest = one.simplest;
     uint64_t differing = one.groups[GROUP_COLOR].differing;
     blend_report_free(&report);
@@ -294,11 +294,11 @@ static uint32_t bits(float x)
     return testing_bits(x);
 }
 
-/* 1/3 + 1/5 in floats: half a unit for Direct3D, one for OpenGL's 17.3.6, 1e-5 for its 2.3.4. */
+/* 1/2 + 1/4 in floats: half a unit for Direct3D, one for OpenGL's 17.3.6, 1e-5 for its 2.3.4. */
 START_TEST(test_rules_floats)
 {
     BlendRuleTally tallies[BLEND_RULES];
-    const float value[4] = {1.0f / 3.0f}, pixel[4] = {0.2f};
+    const float value[4] = {0.5f}, pixel[4] = {0.25f};
     uint32_t sum = bits(value[0] + pixel[0]);
     for (uint32_t off = 0; off < 3; off++) {
         judge(EQUATION_ADD, FORMAT_RGBA32F, value, pixel, sum + off, tallies);
@@ -306,10 +306,10 @@ START_TEST(test_rules_floats)
         ck_assert_uint_eq(rule(tallies, "OpenGL", "17.3.6")->outside, off > 1);
         ck_assert_uint_eq(rule(tallies, "OpenGL", "2.3.4")->outside, 0);
     }
-    judge(EQUATION_ADD, FORMAT_RGBA32F, value, pixel, bits(0.53334f), tallies);
+    judge(EQUATION_ADD, FORMAT_RGBA32F, value, pixel, bits(0.750009f), tallies);
     ck_assert_uint_eq(rule(tallies, "OpenGL", "2.3.4")->outside, 1);
     ck_assert_uint_eq(rule(tallies, "dEQP, Vulkan", "")->outside, 0);
-    judge(EQUATION_ADD, FORMAT_RGBA32F, value, pixel, bits(0.53335f), tallies);
+    judge(EQUATION_ADD, FORMAT_RGBA32F, value, pixel, bits(0.750011f), tallies);
     ck_assert_uint_eq(rule(tallies, "dEQP, Vulkan", "")->outside, 1);
     judge(EQUATION_ADD, FORMAT_RGBA32F, value, pixel, bits(NAN), tallies);
     ck_assert_uint_eq(rule(tallies, "OpenGL", "2.3.4")->outside, 1);
@@ -338,14 +338,16 @@ START_TEST(test_rules_unstated)
 }
 END_TEST
 
-/* Right arithmetics that claim an API's precision keep its rules on every vector. */
+/* Right arithmetics that claim an API's precision keep its rules on every vector. So does the
+ * driver's where there is alpha; elsewhere it leaves out products with 1 - 1, whose NaN Direct3D
+ * wants, and its r32f lerp d + a*(s - d) loses an s that is far below d. */
 START_TEST(test_rules_keep)
 {
-    static const char *const names[] = {"exact", "driver", "fused", "separate"};
+    static const char *const names[] = {"driver", "exact", "fused", "separate"};
     PixelFormat format = blend_formats[_i];
     make_vectors(format);
     for (int e = 0; e < EQUATION_COUNT; e++)
-        for (size_t i = 0; i < 4; i++) {
+        for (size_t i = format_info(format)->channels < 4; i < 4; i++) {
             blend(names[i], (EquationId)e, format);
             check((EquationId)e, format, 2, VECTORS);
             for (int api = 0; api < API_SUITE; api++)
