@@ -212,6 +212,8 @@ ALWAYS_INLINE void half_pixel(HalfBlend *blend, const Part parts[2], const float
     uint32_t flushing = op_suspend();
     blend(parts, source, d, out);
     op_leave(flushing);
+    for (int i = 0; i < 4; i++)
+        out[i] = op_canonical(out[i]);
     format_store(FORMAT_RGBA16F, out, pixel);
 }
 
