@@ -19,6 +19,7 @@
     X(BINDVERTEXARRAY, BindVertexArray)                                                            \
     X(BLENDEQUATION, BlendEquation)                                                                \
     X(BLENDEQUATIONI, BlendEquationi)                                                              \
+    X(BLENDEQUATIONSEPARATE, BlendEquationSeparate)                                                \
     X(BLENDFUNC, BlendFunc)                                                                        \
     X(BLENDFUNCI, BlendFunci)                                                                      \
     X(BLENDFUNCSEPARATE, BlendFuncSeparate)                                                        \

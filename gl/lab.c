@@ -160,27 +160,31 @@ static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
     return result;
 }
 
-static void set_blend(ExperimentBlend blend)
+static void set_blend(const BlendEquation *equation)
 {
-    static const struct {
-        GLenum equation, source, source_alpha, destination, destination_alpha;
-    } states[BLEND_COUNT] = {
-        [BLEND_UNDER] = {GL_FUNC_ADD, GL_DST_ALPHA, GL_ZERO, GL_ONE, GL_ONE_MINUS_SRC_ALPHA},
-        [BLEND_SEED] = {GL_FUNC_ADD, GL_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ONE},
-        [BLEND_OVER] = {GL_FUNC_ADD, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA,
-                        GL_ONE_MINUS_SRC_ALPHA},
-        [BLEND_ADD] = {GL_FUNC_ADD, GL_ONE, GL_ONE, GL_ONE, GL_ONE},
-        [BLEND_PRODUCT] = {GL_FUNC_ADD, GL_ZERO, GL_ZERO, GL_ONE_MINUS_SRC_COLOR,
-                           GL_ONE_MINUS_SRC_COLOR},
-        [BLEND_MAX] = {GL_MAX, GL_ONE, GL_ONE, GL_ONE, GL_ONE},
-        [BLEND_REPLACE] = {GL_FUNC_ADD, GL_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA,
-                           GL_ONE_MINUS_SRC_ALPHA},
-        [BLEND_KEEP] = {GL_FUNC_ADD, GL_ONE_MINUS_DST_ALPHA, GL_ONE_MINUS_DST_ALPHA, GL_ONE,
-                        GL_ONE},
+    static const GLenum factors[FACTOR_COUNT] = {
+        [FACTOR_ZERO] = GL_ZERO,
+        [FACTOR_ONE] = GL_ONE,
+        [FACTOR_SRC_COLOR] = GL_SRC_COLOR,
+        [FACTOR_ONE_MINUS_SRC_COLOR] = GL_ONE_MINUS_SRC_COLOR,
+        [FACTOR_DST_COLOR] = GL_DST_COLOR,
+        [FACTOR_ONE_MINUS_DST_COLOR] = GL_ONE_MINUS_DST_COLOR,
+        [FACTOR_SRC_ALPHA] = GL_SRC_ALPHA,
+        [FACTOR_ONE_MINUS_SRC_ALPHA] = GL_ONE_MINUS_SRC_ALPHA,
+        [FACTOR_DST_ALPHA] = GL_DST_ALPHA,
+        [FACTOR_ONE_MINUS_DST_ALPHA] = GL_ONE_MINUS_DST_ALPHA,
+        [FACTOR_SRC_ALPHA_SATURATE] = GL_SRC_ALPHA_SATURATE,
     };
-    gl.BlendEquation(states[blend].equation);
-    gl.BlendFuncSeparate(states[blend].source, states[blend].destination,
-                         states[blend].source_alpha, states[blend].destination_alpha);
+    static const GLenum funcs[BLEND_FUNC_COUNT] = {
+        [BLEND_FUNC_ADD] = GL_FUNC_ADD,
+        [BLEND_FUNC_SUBTRACT] = GL_FUNC_SUBTRACT,
+        [BLEND_FUNC_REVERSE_SUBTRACT] = GL_FUNC_REVERSE_SUBTRACT,
+        [BLEND_FUNC_MIN] = GL_MIN,
+        [BLEND_FUNC_MAX] = GL_MAX,
+    };
+    gl.BlendEquationSeparate(funcs[equation->func], funcs[equation->func_alpha]);
+    gl.BlendFuncSeparate(factors[equation->source], factors[equation->destination],
+                         factors[equation->source_alpha], factors[equation->destination_alpha]);
 }
 
 /* The destination is drawn first, without blending, so that it is what the format can store. */
@@ -194,7 +198,7 @@ static Result blend(GlLab *lab, const Experiment *experiment, uint32_t *out)
     if (result != RESULT_OK)
         return result;
     draw_all();
-    set_blend(experiment->blend);
+    set_blend(&experiment->equation);
     result = lab_use(lab, COPY_BODY);
     if (result == RESULT_OK) {
         gl.Enable(GL_BLEND);

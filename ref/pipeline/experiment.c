@@ -75,18 +75,12 @@ static void depth_fetches(const Experiment *experiment, uint32_t *out)
     }
 }
 
-static void blends(const Experiment *experiment, uint32_t *out)
+static void blends(bool fused, const Experiment *experiment, uint32_t *out)
 {
-    static void (*const functions[BLEND_COUNT])(PixelFormat, const float source[4], void *) = {
-        [BLEND_UNDER] = blend_under,     [BLEND_SEED] = blend_opaque_seed,
-        [BLEND_OVER] = blend_over,       [BLEND_ADD] = blend_add,
-        [BLEND_PRODUCT] = blend_product, [BLEND_MAX] = blend_max,
-        [BLEND_REPLACE] = blend_replace, [BLEND_KEEP] = blend_keep,
-    };
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         unsigned char pixel[16];
         format_store(experiment->format, experiment->b[i], pixel);
-        functions[experiment->blend](experiment->format, experiment->a[i], pixel);
+        blend_pixels(&experiment->equation, fused, experiment->format, 1, &experiment->a[i], pixel);
         put_codes(experiment->format, pixel, &out[4 * i]);
     }
 }
@@ -115,7 +109,7 @@ static __attribute__((noinline)) void perform(bool fused, const Experiment *expe
         depth_fetches(experiment, out);
         return;
     case EXPERIMENT_BLEND:
-        blends(experiment, out);
+        blends(fused, experiment, out);
         return;
     default:
         experiment_raster(fused, experiment, out);

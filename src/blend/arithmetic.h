@@ -22,8 +22,8 @@ typedef enum ArithmeticKind {
 } ArithmeticKind;
 
 typedef enum BlendPrecision {
-    PRECISION_FLOAT = 0, /* products and sums are rounded to 24 bits */
-    PRECISION_HALF,
+    PRECISION_FLOAT = 0, /* operands, products and sums are rounded to 24 bits */
+    PRECISION_HALF,      /* the same to 11 */
     PRECISION_DOUBLE,
     PRECISION_CODES /* integers of the format; unorm only */
 } BlendPrecision;
@@ -37,18 +37,40 @@ typedef enum BlendRounding {
 
 /* a·b / (2^n − 1) of integers of n bits. */
 typedef enum CodeProduct {
-    CODES_NEAREST = 0,  /* the exact quotient to nearest: t = ab + 2^(n−1); (t + (t >> n)) >> n */
-    CODES_DRIVER,       /* t = ab; t += t >> n; (t + 2^(n−1)) >> n */
-    CODES_FLOOR,        /* ab / (2^n − 1) */
-    CODES_SHIFT,        /* ab >> n */
-    CODES_SHIFT_ROUND,  /* (ab + 2^(n−1)) >> n */
-    CODES_SHIFT_MOST,   /* (ab + 2^n − 1) >> n */
-    CODES_SHIFT_STRETCH /* a·(b + (b >> (n − 1))) >> n */
+    CODES_NEAREST = 0, /* the exact quotient to nearest: t = ab + 2^(n−1); (t + (t >> n)) >> n */
+    CODES_DRIVER,      /* t = ab; t += t >> n; (t + 2^(n−1)) >> n */
+    CODES_FLOOR,       /* ab / (2^n − 1) */
+    CODES_SHIFT,       /* ab >> n */
+    CODES_SHIFT_ROUND, /* (ab + 2^(n−1)) >> n */
+    CODES_SHIFT_MOST,  /* (ab + 2^n − 1) >> n */
+    CODES_SHIFT_STRETCH, /* a·(b + (b >> (n − 1))) >> n */
+    CODES_SHIFT_PLUS,    /* a·(b + 1) >> n; b is the factor */
+    CODES_RECIPROCAL     /* ab·(2^n + 1) >> 2n: the reciprocal without its rounding */
 } CodeProduct;
 
-/* What programs get wrong; bits 1 << mistake. Whoever adds one proves that the vectors show it. */
+/* What programs get wrong; bits 1 << mistake, of ARITHMETIC_STEPS. Whoever adds one proves that the
+ * vectors show it. */
 typedef enum BlendMistake {
     MISTAKE_FACTORS_SWAPPED = 0,
+    MISTAKE_ALPHA_AS_COLOR,        /* alpha is blended with the colours' factors and function */
+    MISTAKE_COVERAGE,              /* the stored alpha is complemented where it is a factor */
+    MISTAKE_ALPHA_FIRST,           /* colours are blended with the alpha that was just stored */
+    MISTAKE_DESTINATION_ALPHA_ONE, /* the stored alpha is read as 1 */
+    MISTAKE_UNPREMULTIPLIED,       /* the source's colours are divided by its alpha */
+    MISTAKE_ALPHA_TWICE,           /* they are multiplied by it once more */
+    MISTAKE_EARLY_OUT, /* source alpha ≥ 1 stores the source, where the destination's factor is
+                        * 1 − source alpha; stored alpha ≤ 0 keeps the pixel, where it is the
+                        * source's factor */
+    MISTAKE_EARLY_OUT_254, /* the same from 254/255 on, and up to 1/255 */
+    MISTAKE_CLAMPED_EARLY, /* the source is clamped to [0, 1], of float formats too */
+    MISTAKE_CLAMPED_LATE,  /* of unorm formats only the result is clamped */
+    MISTAKE_WRAPS,         /* a sum of codes is taken modulo 2^bits; codes only */
+    MISTAKE_EIGHT_BITS, /* rgba16 is blended in 8 bits, and the result is times 257; codes only */
+    MISTAKE_EIGHT_BITS_SHIFTED, /* the same, and the result is shifted by 8 */
+    MISTAKE_COMPLEMENT_CODES,   /* 1 − x is computed in 8 bits */
+    MISTAKE_THROUGH_HALF,       /* the result is rounded to half before it is stored */
+    MISTAKE_NAN_ZERO,           /* NaN is stored as 0 */
+    MISTAKE_GAMMA,              /* colours are squared, blended, and the root is stored */
     MISTAKE_COUNT
 } BlendMistake;
 
@@ -59,10 +81,11 @@ typedef struct Arithmetic {
     BlendRounding rounding; /* of products and sums */
     BlendRounding store;    /* of the result into the format */
     CodeProduct product;    /* of PRECISION_CODES */
-    bool fused;             /* the last product is added without being rounded */
-    bool flush;             /* denormal operands and results are zeros of their sign */
-    bool source_stored;     /* the source is first rounded to the format */
-    /* Of any kind: */
+    bool
+        fused;  /* the last product, of the destination or of its factor 1 the source's, is added
+                 * without being rounded. Of ARITHMETIC_DRIVER: the processor fuses, see op_muladd */
+    bool flush; /* denormal operands and results are zeros of their sign, stored halves too */
+    bool source_stored; /* the source is first rounded to the format */
     uint32_t mistakes;
 } Arithmetic;
 
@@ -79,12 +102,21 @@ const ArithmeticInfo *arithmetic_info(size_t i);
 
 /* A name, or comma-separated key=value of the fields (precision=float|half|double|codes,
  * rounding= and store=nearest|truncate|away|up, product=nearest|driver|floor|shift|shift-round|
- * shift-most|shift-stretch, fused=, flush= and source-stored=yes|no, mistake=NAME). BAD_INPUT with
- * a message otherwise. */
+ * shift-most|shift-stretch|shift-plus|reciprocal, fused=, flush= and source-stored=yes|no,
+ * mistake=NAME, which may be given several times). BAD_INPUT with a message otherwise. */
 Result arithmetic_parse(const char *text, Arithmetic *out);
 
-/* Whether this arithmetic is defined for the format and equation: codes are of unorm formats; the
- * driver's is known for the equations that were measured. NULL, or why not in one line (static). */
+/* The name of the table, or key=value of the fields that are not 0, as arithmetic_parse reads them.
+ * out: room for ARITHMETIC_TEXT bytes. */
+enum {
+    ARITHMETIC_TEXT = 768
+};
+void arithmetic_print(const Arithmetic *arithmetic, char out[ARITHMETIC_TEXT]);
+
+const char *arithmetic_mistake_name(BlendMistake mistake); /* "factors-swapped"; static */
+
+/* Whether this arithmetic is defined for the format and equation: codes are of unorm formats, and
+ * some mistakes are of some formats. NULL, or why not in one line (static). */
 const char *arithmetic_refuses(const Arithmetic *arithmetic, const BlendEquation *equation,
                                PixelFormat format);
 

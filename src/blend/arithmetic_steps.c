@@ -69,33 +69,8 @@ static double taken(const Arithmetic *a, const FormatInfo *info, double x)
 {
     if (a->precision == PRECISION_CODES || a->source_stored)
         return fetched(a, info, stored(info, a->store, x));
-    return rounded(a, info->kind == KIND_UNORM ? clamped(x) : x);
-}
-
-static double code_product(const Arithmetic *a, double most, double x, double y)
-{
-    int bits = most > 255.0 ? 16 : 8;
-    uint64_t n = (uint64_t)most, p = (uint64_t)x, q = (uint64_t)y, t = p * q;
-    uint64_t half = (uint64_t)1 << (bits - 1);
-    switch (a->product) {
-    case CODES_NEAREST:
-        t += half;
-        return (double)((t + (t >> bits)) >> bits);
-    case CODES_DRIVER:
-        t += t >> bits;
-        return (double)((t + half) >> bits);
-    case CODES_FLOOR:
-        return (double)(t / n);
-    case CODES_SHIFT:
-        return (double)(t >> bits);
-    case CODES_SHIFT_ROUND:
-        return (double)((t + half) >> bits);
-    case CODES_SHIFT_MOST:
-        return (double)((t + n) >> bits);
-    case CODES_SHIFT_STRETCH:
-        return (double)((p * (q + (q >> (bits - 1)))) >> bits);
-    }
-    return 0.0;
+    bool clamps = info->kind == KIND_UNORM && !(a->mistakes & 1u << MISTAKE_CLAMPED_LATE);
+    return rounded(a, clamps ? clamped(x) : x);
 }
 
 /* An operand times its factor. Of codes nobody multiplies by the factor 1. */
@@ -106,13 +81,17 @@ static double factored(const Arithmetic *a, const ChannelOperands *o, BlendFacto
         return multiply(a, x, y);
     if (factor == FACTOR_ONE || (factor == FACTOR_SRC_ALPHA_SATURATE && alpha))
         return x;
-    return code_product(a, o->one, x, y);
+    return (double)arithmetic_code_product(a->product, o->one > 255.0 ? 16 : 8, (int64_t)x,
+                                           (int64_t)y);
 }
 
 static double factor_value(const Arithmetic *a, const ChannelOperands *o, FactorBase f)
 {
     if (!f.complement)
         return f.base;
+    double wrong = mistake_complement(a, o->one, f.base);
+    if (wrong == wrong)
+        return wrong;
     return a->precision == PRECISION_CODES ? o->one - f.base : add(a, 1.0, -f.base);
 }
 
@@ -148,11 +127,34 @@ static void compute(const Arithmetic *a, const ChannelOperands *o, const Channel
         steps->sum = multiply_add(a, sign_q * d, g, sign_p * p);
 }
 
-static void swap_factors(ChannelEquation *part)
+/* The operands of a channel. */
+static ChannelOperands operands_of(const Arithmetic *a, const FormatInfo *info, PixelFormat format,
+                                   const float source[4], const void *pixel, int channel)
 {
-    BlendFactor source = part->source;
-    part->source = part->destination;
-    part->destination = source;
+    double alpha = (double)source[3];
+    double s = mistake_source(a, (double)source[channel], alpha, channel < 3);
+    ChannelOperands o = {
+        .one = a->precision == PRECISION_CODES ? (double)info->unorm_max : 1.0,
+        .source = taken(a, info, s),
+        .source_alpha = taken(a, info, mistake_source(a, alpha, alpha, false)),
+        .destination =
+            fetched(a, info, arithmetic_value(info->kind, format_bits(format, pixel, channel))),
+    };
+    o.destination_alpha = o.one;
+    if (info->channels == 4)
+        o.destination_alpha =
+            fetched(a, info, arithmetic_value(info->kind, format_bits(format, pixel, 3)));
+    return o;
+}
+
+/* The sum as a number of the format. */
+static double stored_sum(const Arithmetic *a, const FormatInfo *info, double one, double sum)
+{
+    if (a->precision == PRECISION_CODES)
+        return mistake_code(a, one, sum);
+    double value = stored(info, a->store, sum);
+    bool tiny = info->kind == KIND_HALF && a->flush && fabs(value) < 0x1p-14;
+    return tiny ? copysign(0.0, value) : value;
 }
 
 uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *equation,
@@ -160,29 +162,30 @@ uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *
                              int channel, BlendSteps *steps)
 {
     const FormatInfo *info = format_info(format);
-    bool codes = arithmetic->precision == PRECISION_CODES;
-    ChannelEquation part = channel_equation(equation, channel);
-    if (arithmetic->mistakes & 1u << MISTAKE_FACTORS_SWAPPED)
-        swap_factors(&part);
-    ChannelOperands o = {
-        .one = codes ? (double)info->unorm_max : 1.0,
-        .source = taken(arithmetic, info, (double)source[channel]),
-        .source_alpha = taken(arithmetic, info, (double)source[3]),
-    };
-    double stored_channel = arithmetic_value(info->kind, format_bits(format, pixel, channel));
-    o.destination = fetched(arithmetic, info, stored_channel);
-    o.destination_alpha = o.one;
-    if (info->channels == 4)
-        o.destination_alpha =
-            fetched(arithmetic, info, arithmetic_value(info->kind, format_bits(format, pixel, 3)));
+    bool color = channel < 3;
+    BlendEquation done = mistake_equation(arithmetic, equation);
+    ChannelEquation part = channel_equation(&done, channel);
+    ChannelOperands o = operands_of(arithmetic, info, format, source, pixel, channel);
+    if (color && info->channels == 4 && arithmetic->mistakes & 1u << MISTAKE_ALPHA_FIRST) {
+        Arithmetic first = *arithmetic;
+        first.mistakes &= ~(1u << MISTAKE_ALPHA_FIRST);
+        uint32_t alpha = arithmetic_stepwise(&first, equation, format, source, pixel, 3, NULL);
+        o.destination_alpha = fetched(arithmetic, info, arithmetic_value(info->kind, alpha));
+    }
+    EarlyOut early = mistake_early_out(arithmetic, &done, &o);
+    mistake_operands(arithmetic, color, &o);
     BlendSteps local;
     BlendSteps *out = steps ? steps : &local;
-    *out = (BlendSteps){.source = o.source, .destination = o.destination, .codes = codes};
+    *out = (BlendSteps){.source = o.source,
+                        .destination = o.destination,
+                        .codes = arithmetic->precision == PRECISION_CODES};
+    if (early == EARLY_OUT_KEEP) {
+        out->sum = o.destination;
+        return format_bits(format, pixel, channel);
+    }
     compute(arithmetic, &o, &part, out);
-    double value;
-    if (codes)
-        value = out->sum < 0.0 ? 0.0 : out->sum < o.one ? out->sum : o.one;
-    else
-        value = stored(info, arithmetic->store, out->sum);
-    return arithmetic_bits(info->kind, value);
+    if (early == EARLY_OUT_SOURCE)
+        out->sum = o.source;
+    out->sum = mistake_sum(arithmetic, color, out->sum);
+    return arithmetic_bits(info->kind, stored_sum(arithmetic, info, o.one, out->sum));
 }

@@ -1,43 +1,10 @@
-/* What is blended: factors and functions as OpenGL has them, and the equations with names.
- *
- * Each stored channel becomes func(source · factor, destination · factor); MIN and MAX take no
- * factors. Formats without alpha read a destination alpha of 1, those without a channel drop it.
- * Source: OpenGL 4.6 core, section 17.3.6. Not modelled: the constant colour, dual sources, logic
- * operations, sRGB targets, write masks. */
+/* The equations with names: the factors and functions of number/blend_equation.h, parsed and
+ * printed. */
 #ifndef PEEL_BLEND_EQUATION_H
 #define PEEL_BLEND_EQUATION_H
 
 #include "base/result.h"
-
-typedef enum BlendFactor {
-    FACTOR_ZERO = 0,
-    FACTOR_ONE,
-    FACTOR_SRC_COLOR, /* per channel: of alpha the source's alpha */
-    FACTOR_ONE_MINUS_SRC_COLOR,
-    FACTOR_DST_COLOR,
-    FACTOR_ONE_MINUS_DST_COLOR,
-    FACTOR_SRC_ALPHA,
-    FACTOR_ONE_MINUS_SRC_ALPHA,
-    FACTOR_DST_ALPHA,
-    FACTOR_ONE_MINUS_DST_ALPHA,
-    FACTOR_SRC_ALPHA_SATURATE, /* min(source alpha, 1 − destination alpha); of alpha 1 */
-    FACTOR_COUNT
-} BlendFactor;
-
-typedef enum BlendFunc {
-    BLEND_FUNC_ADD = 0,
-    BLEND_FUNC_SUBTRACT,         /* source − destination */
-    BLEND_FUNC_REVERSE_SUBTRACT, /* destination − source */
-    BLEND_FUNC_MIN,
-    BLEND_FUNC_MAX,
-    BLEND_FUNC_COUNT
-} BlendFunc;
-
-typedef struct BlendEquation {
-    BlendFactor source, destination;             /* of red, green and blue */
-    BlendFactor source_alpha, destination_alpha; /* of alpha */
-    BlendFunc func, func_alpha;
-} BlendEquation;
+#include "number/blend_equation.h"
 
 typedef enum EquationId {
     EQUATION_UNDER = 0, /* behind what is there; its alpha is transmittance */

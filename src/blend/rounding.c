@@ -86,13 +86,46 @@ static double overflowed(const Digits *digits, BlendRounding rounding, double x)
     return copysign(most ? digits->most : INFINITY, x);
 }
 
+/* x, not 0 and finite, to multiples of 2^unit. */
+static double to_unit(BlendRounding rounding, int unit, double x)
+{
+    return ldexp(rounding_integer(rounding, ldexp(x, -unit)), unit);
+}
+
+/* The same on the bits of x, whose last `cut` digits go; 0 < cut < 52. A carry moves on into the
+ * exponent as it should. */
+static double cut_digits(BlendRounding rounding, int cut, double x)
+{
+    uint64_t bits, part = (UINT64_C(1) << cut) - 1, half = UINT64_C(1) << (cut - 1);
+    memcpy(&bits, &x, sizeof bits);
+    switch (rounding) {
+    case BLEND_NEAREST_EVEN:
+        bits += half - 1 + (bits >> cut & 1);
+        break;
+    case BLEND_TOWARD_ZERO:
+        break;
+    case BLEND_NEAREST_AWAY:
+        bits += half;
+        break;
+    case BLEND_UPWARD:
+        bits += x > 0.0 ? part : 0;
+        break;
+    }
+    bits &= ~part;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 /* x, not 0 and finite, to the digits where its unit is not below 2^unit_least. */
 static double to_digits(const Digits *digits, BlendRounding rounding, int unit_least, double x)
 {
-    int unit = ilogb(x) - (digits->digits - 1);
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int exponent = (int)(bits >> 52 & 0x7ff) - 1023, unit = exponent - (digits->digits - 1);
     if (unit < unit_least)
         unit = unit_least;
-    double rounded = ldexp(rounding_integer(rounding, ldexp(x, -unit)), unit);
+    int cut = unit - (exponent - 52);
+    double rounded = cut < 52 ? cut_digits(rounding, cut, x) : to_unit(rounding, unit, x);
     return fabs(rounded) > digits->most ? overflowed(digits, rounding, x) : rounded;
 }
 
@@ -107,6 +140,6 @@ double rounding_flushed(const Digits *digits, BlendRounding rounding, double x)
 {
     if (x == 0.0 || !isfinite(x))
         return x;
-    double rounded = to_digits(digits, rounding, -1100, x);
+    double rounded = to_digits(digits, rounding, -1022, x);
     return fabs(rounded) < ldexp(1.0, digits->exponent_least) ? copysign(0.0, x) : rounded;
 }

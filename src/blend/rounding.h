@@ -26,8 +26,9 @@ double rounding_sum(int count, const double terms[]);
 /* x·y rounded to odd, for a product within 2^±900. */
 double rounding_product(double x, double y);
 
-/* x, which is a value of at most 51 digits or was rounded to odd, rounded to the digits. Overflow
- * gives infinity or the most finite number, as IEEE says for the direction. */
+/* x, 0 or not below 2^-1000, which is a value of at most 51 digits or was rounded to odd, rounded
+ * to the digits. Overflow gives infinity or the most finite number, as IEEE says for the direction.
+ */
 double rounding_to(const Digits *digits, BlendRounding rounding, double x);
 
 /* The same; what is then below the least normal number is the zero of its sign. Tiny is decided

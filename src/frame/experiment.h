@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "frame/render_desc.h"
+#include "number/blend_equation.h"
 #include "number/format.h"
 
 #include <stddef.h>
@@ -74,18 +75,6 @@ typedef enum ExperimentKind {
     EXPERIMENT_SAMPLES      /* 1 count: what GL_SAMPLES_PASSED says of the triangles */
 } ExperimentKind;
 
-typedef enum ExperimentBlend {
-    BLEND_UNDER, /* number/blend.h */
-    BLEND_SEED,
-    BLEND_OVER,
-    BLEND_ADD,
-    BLEND_PRODUCT,
-    BLEND_MAX,
-    BLEND_REPLACE,
-    BLEND_KEEP,
-    BLEND_COUNT
-} ExperimentBlend;
-
 typedef enum RasterField {
     RASTER_TRIANGLE, /* 1 + index of the triangle seen, 0 for none: the other fields are then 0 */
     RASTER_FRONT,    /* 1 or 0 */
@@ -111,7 +100,7 @@ typedef struct Experiment {
     Operation operation;
     bool vertex;        /* the operation is done in the vertex stage */
     PixelFormat format; /* of colour or depth */
-    ExperimentBlend blend;
+    BlendEquation equation;
     /* EXPERIMENT_TEXELS vec4 each; for triangles, 3·count corners: clip position, and varyings
      * in x, y, z. The caller's. */
     const float (*a)[4], (*b)[4];

@@ -102,6 +102,7 @@ static Result run_both(Test *test, const Experiment *experiment)
 Result test_values(Test *test)
 {
     Experiment experiment = test->rule->experiment;
+    experiment.equation = equation_info(test->rule->equation)->equation;
     experiment.a = (const float(*)[4])test->a;
     experiment.b = (const float(*)[4])test->b;
     for (int i = 0; i < INPUT_SETS; i++) {

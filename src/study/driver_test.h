@@ -2,6 +2,7 @@
 #ifndef PEEL_STUDY_DRIVER_TEST_H
 #define PEEL_STUDY_DRIVER_TEST_H
 
+#include "blend/equation.h"
 #include "study/driver.h"
 #include "study/driver_inputs.h"
 
@@ -14,7 +15,8 @@ typedef struct Rule {
     uint32_t allowance; /* greatest distance that does not break peeling */
     DriverValue value;
     Result (*run)(Test *test);
-    Experiment experiment; /* without its operands */
+    Experiment experiment; /* without its operands and equation */
+    EquationId equation;   /* of EXPERIMENT_BLEND */
     unsigned sets;         /* InputSet bits */
     TriangleKind triangle;
     int field, field_end; /* RASTER_… fields that are compared */

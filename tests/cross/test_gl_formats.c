@@ -1,6 +1,8 @@
 /* Stored formats and blending of number/ against the driver. */
 #include "labs.h"
 
+#include "blend/equation.h"
+
 static const PixelFormat colors[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16, FORMAT_RGBA8,
                                      FORMAT_RG16};
 static const PixelFormat depths[] = {FORMAT_D32F, FORMAT_D24, FORMAT_D16};
@@ -94,8 +96,9 @@ END_TEST
 
 START_TEST(test_blend)
 {
-    check_colors((Experiment){.kind = EXPERIMENT_BLEND, .blend = (ExperimentBlend)_i},
-                 ACCUMULATIONS);
+    check_colors(
+        (Experiment){.kind = EXPERIMENT_BLEND, .equation = equation_info((EquationId)_i)->equation},
+        ACCUMULATIONS);
 }
 END_TEST
 
@@ -103,11 +106,12 @@ END_TEST
 START_TEST(test_blend_narrow)
 {
     static const PixelFormat narrow[] = {FORMAT_R32F, FORMAT_RG32F};
-    static const ExperimentBlend blends[] = {BLEND_ADD, BLEND_PRODUCT, BLEND_MAX};
+    static const EquationId ids[] = {EQUATION_ADD, EQUATION_PRODUCT, EQUATION_MAX};
     for (int i = 0; i < 2; i++)
         for (int set = 0; set < INPUT_SETS; set++) {
-            Experiment experiment = {
-                .kind = EXPERIMENT_BLEND, .blend = blends[_i], .format = narrow[i]};
+            Experiment experiment = {.kind = EXPERIMENT_BLEND,
+                                     .equation = equation_info(ids[_i])->equation,
+                                     .format = narrow[i]};
             fill(narrow[i], set);
             labs_assert_equal(&experiment, labs_float, format_info(narrow[i])->name, set);
         }
@@ -125,7 +129,7 @@ int main(void)
     tcase_add_test(tcase, test_fetch);
     tcase_add_test(tcase, test_depth);
     tcase_add_test(tcase, test_depth24_order);
-    tcase_add_loop_test(tcase, test_blend, 0, BLEND_COUNT);
+    tcase_add_loop_test(tcase, test_blend, 0, EQUATION_COUNT);
     tcase_add_loop_test(tcase, test_blend_narrow, 0, 3);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
