@@ -10,7 +10,8 @@
  *
  * The bound. F are the numbers of the format (codes / greatest code; halves; floats), down(x) and
  * up(x) the nearest of them with down(x) ≤ x ≤ up(x). A sane arithmetic
- *  - may first store the source: c becomes something in [down(c), up(c)], and a likewise;
+ *  - may first store the source: c becomes something in [down(c), up(c)], and a likewise (codes,
+ *    which are floats next to one: it, or by truncation the one below);
  *  - computes 1 − a, c·T, T·(1 − a) and the sum each faithfully: to one of the two neighbours of
  *    the real result among the numbers that it works with. F is among these, so that the result is
  *    in [down(x), up(x)]. Where F are codes it may work with halves (rgba8) or floats (rgba16)

@@ -76,9 +76,16 @@ static Interval store(const Grid *grid, Interval x, uint32_t max)
 }
 
 /* The source as it is, or as it is stored first; what a float format stores it as is itself. */
-static Interval source_of(const Grid *grid, float x)
+static Interval source_of(const Grid *grid, double x)
 {
-    return faithful(grid, (double)x, (double)x);
+    return faithful(grid, x, x);
+}
+
+/* A float next to a code is stored as it, or toward zero as the one below. */
+static Interval source_code(PixelFormat format, double x)
+{
+    double code = vector_values_bits(format, (float)x);
+    return (Interval){fmin(code, floor(x * format_info(format)->unorm_max)), code};
 }
 
 static Interval hull(Interval x, Interval y)
@@ -131,8 +138,8 @@ void sequence_bound(PixelFormat format, int layers, const float (*source)[4], do
     for (int i = 0; i < layers; i++) {
         Interval operand[4];
         for (int c = 0; c < 4; c++) {
-            double code = vector_values_bits(format, source[i][c]);
-            operand[c] = max ? (Interval){code, code} : source_of(grid, source[i][c]);
+            double x = (double)source[i][c];
+            operand[c] = max ? source_code(format, x) : source_of(grid, x);
         }
         if (max)
             blend_codes(grid, max, operand, pixel);
