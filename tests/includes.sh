@@ -47,7 +47,7 @@ function report(place, text) {
 }
 # First forbidden header that can be reached from file, "" if none.
 function reaches_arithmetic(file, visited, i, found, count, list) {
-    if (file ~ /^src\/number\/(op|blend)/)
+    if (file ~ /^src\/(number\/(op|blend)|blend\/)/)
         return file
     if (file in visited)
         return ""
@@ -137,6 +137,7 @@ planted src/study/threeway.c '#include "gl/gl_renderer.h"'
 planted src/report/html.c '#include "cli/options.h"'
 planted ref/pipeline/setup.c '#include "ref/truth/truth.h"'
 planted ref/truth/truth.c '#include "number/blend.h"'
+planted ref/truth/truth.c '#include "blend/arithmetic.h"'
 planted ref/truth/soup.h '#include "../../src/number/op.h"'
 planted ref/truth/coverage.c '#include "ref/pipeline/setup.h"'
 planted gl/passes.c '#include "compare/metrics.h"'

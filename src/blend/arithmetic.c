@@ -99,12 +99,12 @@ void arithmetic_blend(const Arithmetic *arithmetic, const BlendEquation *equatio
     size_t bytes = format_pixel_bytes(format);
     if (arithmetic->kind == ARITHMETIC_DRIVER) {
         uint32_t saved = op_enter();
-        for (size_t i = 0; i < count; i++)
-            blend_pixel(equation, arithmetic->fused, format, source[i], (char *)pixels + i * bytes);
+        blend_pixels(equation, arithmetic->fused, format, count, source, pixels);
         op_leave(saved);
         return;
     }
-    if (arithmetic_codes_blend(arithmetic, equation, format, count, source, pixels))
+    if (arithmetic_codes_blend(arithmetic, equation, format, count, source, pixels) ||
+        arithmetic_floats_blend(arithmetic, equation, format, count, source, pixels))
         return;
     for (size_t i = 0; i < count; i++)
         blend_plain(arithmetic, equation, format, source[i], (char *)pixels + i * bytes);

@@ -58,9 +58,9 @@ typedef enum BlendMistake {
     MISTAKE_DESTINATION_ALPHA_ONE, /* the stored alpha is read as 1 */
     MISTAKE_UNPREMULTIPLIED,       /* the source's colours are divided by its alpha */
     MISTAKE_ALPHA_TWICE,           /* they are multiplied by it once more */
-    MISTAKE_EARLY_OUT, /* source alpha ≥ 1 stores the source, where the destination's factor is
-                        * 1 − source alpha; stored alpha ≤ 0 keeps the pixel, where it is the
-                        * source's factor */
+    MISTAKE_EARLY_OUT,     /* source alpha ≥ 1 leaves out the destination, where its factor is
+                            * 1 − source alpha; stored alpha ≤ 0 keeps the pixel, where it is the
+                            * source's factor */
     MISTAKE_EARLY_OUT_254, /* the same from 254/255 on, and up to 1/255 */
     MISTAKE_CLAMPED_EARLY, /* the source is clamped to [0, 1], of float formats too */
     MISTAKE_CLAMPED_LATE,  /* of unorm formats only the result is clamped */

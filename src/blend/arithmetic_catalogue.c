@@ -97,8 +97,8 @@ static const ArithmeticInfo infos[] = {
 
     /* Wrong: short cuts. */
     {"early-out",
-     "alpha >= 1 stores the source, stored alpha <= 0 keeps the pixel: NaN, infinity, "
-     "alpha beyond 1",
+     "alpha >= 1 leaves out the destination, T <= 0 the source: NaN, infinity, alpha "
+     "beyond 1",
      MISTAKE(MISTAKE_EARLY_OUT)},
     {"early-out-254", "the same from 254/255 on, and up to 1/255", MISTAKE(MISTAKE_EARLY_OUT_254)},
     {"clamped-early", "the source clamped to [0, 1], though the format is float",

@@ -1,6 +1,7 @@
 /* Unorm pixels in integers, many at a time: what arithmetic_exact.c and arithmetic_steps.c define
  * channel by channel, bit-compared with them by tests/unit/test_arithmetic_steps.c. */
 #include "blend/arithmetic_parts.h"
+#include "number/blend_codes.h"
 
 #include <string.h>
 
@@ -21,41 +22,6 @@ static int64_t code_of(float x, int64_t most)
     return (int64_t)((scaled + 0x1p52) - 0x1p52);
 }
 
-static inline int64_t factor_of(const CodeBlend *blend, BlendFactor factor, bool alpha, int64_t s,
-                                int64_t d, int64_t source_alpha, int64_t destination_alpha)
-{
-    int64_t room = blend->most - destination_alpha;
-    switch (factor) {
-    case FACTOR_ZERO:
-        return 0;
-    case FACTOR_SRC_COLOR:
-        return s;
-    case FACTOR_ONE_MINUS_SRC_COLOR:
-        return blend->most - s;
-    case FACTOR_DST_COLOR:
-        return d;
-    case FACTOR_ONE_MINUS_DST_COLOR:
-        return blend->most - d;
-    case FACTOR_SRC_ALPHA:
-        return source_alpha;
-    case FACTOR_ONE_MINUS_SRC_ALPHA:
-        return blend->most - source_alpha;
-    case FACTOR_DST_ALPHA:
-        return destination_alpha;
-    case FACTOR_ONE_MINUS_DST_ALPHA:
-        return room;
-    case FACTOR_SRC_ALPHA_SATURATE:
-        return alpha ? blend->most : source_alpha < room ? source_alpha : room;
-    default:
-        return blend->most;
-    }
-}
-
-static inline int64_t combined(BlendFunc func, int64_t a, int64_t b)
-{
-    return func == BLEND_FUNC_ADD ? a + b : func == BLEND_FUNC_SUBTRACT ? a - b : b - a;
-}
-
 static inline bool is_one(BlendFactor factor, bool alpha)
 {
     return factor == FACTOR_ONE || (factor == FACTOR_SRC_ALPHA_SATURATE && alpha);
@@ -64,23 +30,22 @@ static inline bool is_one(BlendFactor factor, bool alpha)
 static inline int64_t channel_of(const CodeBlend *blend, const ChannelEquation *part, int64_t s,
                                  int64_t d, int64_t source_alpha, int64_t destination_alpha)
 {
-    if (part->func == BLEND_FUNC_MIN)
-        return s < d ? s : d;
-    if (part->func == BLEND_FUNC_MAX)
-        return s > d ? s : d;
-    int64_t f = factor_of(blend, part->source, part->alpha, s, d, source_alpha, destination_alpha);
-    int64_t g =
-        factor_of(blend, part->destination, part->alpha, s, d, source_alpha, destination_alpha);
+    if (blend_func_extreme(part->func))
+        return blend_codes_combine(part->func, s, d);
+    int64_t f = blend_codes_factor(blend->most, part->source, part->alpha, s, d, source_alpha,
+                                   destination_alpha);
+    int64_t g = blend_codes_factor(blend->most, part->destination, part->alpha, s, d, source_alpha,
+                                   destination_alpha);
     int64_t most = blend->most, sum;
     if (blend->exact) {
-        sum = combined(part->func, s * f, d * g);
+        sum = blend_codes_combine(part->func, s * f, d * g);
         sum = sum > 0 ? (2 * sum + most) / (2 * most) : 0;
     } else {
         if (!is_one(part->source, part->alpha))
             s = arithmetic_code_product(blend->product, blend->bits, s, f);
         if (!is_one(part->destination, part->alpha))
             d = arithmetic_code_product(blend->product, blend->bits, d, g);
-        sum = combined(part->func, s, d);
+        sum = blend_codes_combine(part->func, s, d);
     }
     return sum < 0 ? 0 : sum < most ? sum : most;
 }

@@ -119,6 +119,8 @@ const char *mistake_refuses(const Arithmetic *a, PixelFormat format)
     if ((has(a, MISTAKE_EIGHT_BITS) || has(a, MISTAKE_EIGHT_BITS_SHIFTED)) &&
         (!codes || format != FORMAT_RGBA16))
         return "too few bits are of codes of 16: expected rgba16 and precision=codes";
+    if (has(a, MISTAKE_EARLY_OUT) && unorm)
+        return "of unorm formats leaving out at alpha 1 changes nothing: expected a float format";
     if (has(a, MISTAKE_CLAMPED_EARLY) && unorm)
         return "unorm formats clamp the source rightly: expected a float format";
     if (has(a, MISTAKE_CLAMPED_LATE) && (!unorm || codes || a->source_stored))

@@ -6,8 +6,7 @@
 static const EquationInfo infos[EQUATION_COUNT] = {
     [EQUATION_UNDER] = {"under",
                         "behind what is there: s*T + d, T*(1 - sA); premultiplied, T is alpha",
-                        {FACTOR_DST_ALPHA, FACTOR_ONE, FACTOR_ZERO, FACTOR_ONE_MINUS_SRC_ALPHA,
-                         BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+                        BLEND_EQUATION_UNDER},
     [EQUATION_OVER] = {"over",
                        "in front, straight colours: s*sA + d*(1 - sA), sA + dA*(1 - sA)",
                        {FACTOR_SRC_ALPHA, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_ONE,
@@ -16,38 +15,19 @@ static const EquationInfo infos[EQUATION_COUNT] = {
                                      "in front, premultiplied colours: s + d*(1 - sA)",
                                      {FACTOR_ONE, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_ONE,
                                       FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
-    [EQUATION_ADD] = {"add",
-                      "s + d",
-                      {FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, BLEND_FUNC_ADD,
-                       BLEND_FUNC_ADD}},
-    [EQUATION_MAX] = {"max",
-                      "the greater of s and d",
-                      {FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, FACTOR_ONE, BLEND_FUNC_MAX,
-                       BLEND_FUNC_MAX}},
+    [EQUATION_ADD] = {"add", "s + d", BLEND_EQUATION_ADD},
+    [EQUATION_MAX] = {"max", "the greater of s and d", BLEND_EQUATION_MAX},
     [EQUATION_WEIGHTED_SUM] = {"weighted-sum",
                                "s*sA + d, sA + dA: colours weighted by alpha, and the weights",
                                {FACTOR_SRC_ALPHA, FACTOR_ONE, FACTOR_ONE, FACTOR_ONE,
                                 BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
-    [EQUATION_PRODUCT] = {"product",
-                          "d*(1 - s)",
-                          {FACTOR_ZERO, FACTOR_ONE_MINUS_SRC_COLOR, FACTOR_ZERO,
-                           FACTOR_ONE_MINUS_SRC_COLOR, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
-    [EQUATION_SEED] = {"seed",
-                       "s*dA + d in all channels",
-                       {FACTOR_DST_ALPHA, FACTOR_ONE, FACTOR_DST_ALPHA, FACTOR_ONE, BLEND_FUNC_ADD,
-                        BLEND_FUNC_ADD}},
+    [EQUATION_PRODUCT] = {"product", "d*(1 - s)", BLEND_EQUATION_PRODUCT},
+    [EQUATION_SEED] = {"seed", "s*dA + d in all channels", BLEND_EQUATION_SEED},
     [EQUATION_OVER_TRANSMITTANCE] = {"over-transmittance",
                                      "in front, premultiplied: s + d*(1 - sA), T*(1 - sA)",
-                                     {FACTOR_ONE, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_ZERO,
-                                      FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
-    [EQUATION_REPLACE] = {"replace",
-                          "s*sA + d*(1 - sA) in all channels",
-                          {FACTOR_SRC_ALPHA, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_SRC_ALPHA,
-                           FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
-    [EQUATION_KEEP] = {"keep",
-                       "s*(1 - dA) + d in all channels",
-                       {FACTOR_ONE_MINUS_DST_ALPHA, FACTOR_ONE, FACTOR_ONE_MINUS_DST_ALPHA,
-                        FACTOR_ONE, BLEND_FUNC_ADD, BLEND_FUNC_ADD}},
+                                     BLEND_EQUATION_OVER_TRANSMITTANCE},
+    [EQUATION_REPLACE] = {"replace", "s*sA + d*(1 - sA) in all channels", BLEND_EQUATION_REPLACE},
+    [EQUATION_KEEP] = {"keep", "s*(1 - dA) + d in all channels", BLEND_EQUATION_KEEP},
 };
 
 static const char *const factor_names[FACTOR_COUNT] = {
@@ -111,30 +91,39 @@ static int find(const char *const *names, int count, const char *text, size_t le
     return -1;
 }
 
-/* Comma-separated names of text[0..length) to their places in the table, at most `most` of them.
- * *count: how many. */
-static Result parse_list(const char *text, size_t length, const char *const *names, int name_count,
-                         const char *expected, int most, int out[4], int *count)
+/* What a list is of. */
+typedef struct Words {
+    const char *const *names;
+    int count, most;
+    const char *kind, *expected;
+} Words;
+
+static const Words factor_words = {factor_names, FACTOR_COUNT, 4, "factor",
+                                   "an equation's name or a factor, such as src-alpha"};
+static const Words func_words = {func_names, BLEND_FUNC_COUNT, 2, "function",
+                                 "a function, such as max"};
+
+/* Comma-separated names of text[0..length) to their places in the table; *count: how many. */
+static Result parse_list(const char *text, size_t length, const Words *words, int out[4],
+                         int *count)
 {
-    const char *end = text + length;
-    for (*count = 0;; ++*count) {
-        const char *comma = memchr(text, ',', (size_t)(end - text));
-        size_t part = (size_t)((comma ? comma : end) - text);
-        if (*count == most)
+    const char *at = text, *end = text + length;
+    for (*count = 0;;) {
+        const char *comma = memchr(at, ',', (size_t)(end - at));
+        size_t part = (size_t)((comma ? comma : end) - at);
+        if (*count == words->most)
             return result_fail(RESULT_BAD_INPUT,
                                "equation: '%.*s': expected at most %d %ss, separated by commas",
-                               (int)length, end - length, most, expected);
-        out[*count] = find(names, name_count, text, part);
+                               (int)length, text, words->most, words->kind);
+        out[*count] = find(words->names, words->count, at, part);
         if (out[*count] < 0)
-            return result_fail(RESULT_BAD_INPUT,
-                               "equation: '%.*s': expected an equation's name or a %s, such as %s",
-                               (int)part, text, expected, names[name_count > 5 ? 6 : 4]);
+            return result_fail(RESULT_BAD_INPUT, "equation: '%.*s': expected %s", (int)part, at,
+                               words->expected);
+        ++*count;
         if (!comma)
-            break;
-        text = comma + 1;
+            return RESULT_OK;
+        at = comma + 1;
     }
-    ++*count;
-    return RESULT_OK;
 }
 
 Result equation_parse(const char *text, BlendEquation *out)
@@ -147,11 +136,9 @@ Result equation_parse(const char *text, BlendEquation *out)
     const char *colon = strchr(text, ':');
     size_t length = colon ? (size_t)(colon - text) : strlen(text);
     int factors[4], funcs[4] = {BLEND_FUNC_ADD}, count, func_count = 1;
-    Result result =
-        parse_list(text, length, factor_names, FACTOR_COUNT, "factor", 4, factors, &count);
+    Result result = parse_list(text, length, &factor_words, factors, &count);
     if (result == RESULT_OK && colon)
-        result = parse_list(colon + 1, strlen(colon + 1), func_names, BLEND_FUNC_COUNT, "function",
-                            2, funcs, &func_count);
+        result = parse_list(colon + 1, strlen(colon + 1), &func_words, funcs, &func_count);
     if (result != RESULT_OK)
         return result;
     if (count != 2 && count != 4)

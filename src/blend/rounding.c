@@ -50,7 +50,9 @@ double rounding_sum(int count, const double terms[])
         rest = parts[i];
         two_sum(&sum, &rest);
     }
-    return sum == 0.0 ? plain : to_odd(sum, rest);
+    if (sum == 0.0)
+        return plain == 0.0 ? plain : 0.0;
+    return to_odd(sum, rest);
 }
 
 double rounding_product(double x, double y)

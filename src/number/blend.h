@@ -38,8 +38,9 @@ void blend_replace(PixelFormat format, const float source[4], void *pixel);
 /* glBlendFunc(ONE_MINUS_DST_ALPHA, ONE): fills a pixel of zeros, leaves one whose alpha is 1. */
 void blend_keep(PixelFormat format, const float source[4], void *pixel);
 
-/* Any equation. fused: see op_muladd; the driver asks for it in formats of one channel only. */
-void blend_pixel(const BlendEquation *equation, bool fused, PixelFormat format,
-                 const float source[4], void *pixel);
+/* Any equation, of count pixels. fused: see op_muladd; it matters in formats of one channel whose
+ * factors are complementary, where the driver interpolates. */
+void blend_pixels(const BlendEquation *equation, bool fused, PixelFormat format, size_t count,
+                  const float (*source)[4], void *pixels);
 
 #endif

@@ -37,4 +37,31 @@ typedef struct BlendEquation {
     BlendFunc func, func_alpha;
 } BlendEquation;
 
+/* Initialisers of those that the renderers blend with; blend/equation.h has them and more as a
+ * table. */
+#define BLEND_EQUATION_UNDER                                                                       \
+    {                                                                                              \
+        FACTOR_DST_ALPHA, FACTOR_ONE, FACTOR_ZERO, FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD,     \
+            BLEND_FUNC_ADD                                                                         \
+    }
+#define BLEND_EQUATION_OVER_TRANSMITTANCE                                                          \
+    {                                                                                              \
+        FACTOR_ONE, FACTOR_ONE_MINUS_SRC_ALPHA, FACTOR_ZERO, FACTOR_ONE_MINUS_SRC_ALPHA,           \
+            BLEND_FUNC_ADD, BLEND_FUNC_ADD                                                         \
+    }
+/* Four channels alike. */
+#define BLEND_EQUATION_ALL(source, destination, func)                                              \
+    {                                                                                              \
+        source, destination, source, destination, func, func                                       \
+    }
+#define BLEND_EQUATION_ADD BLEND_EQUATION_ALL(FACTOR_ONE, FACTOR_ONE, BLEND_FUNC_ADD)
+#define BLEND_EQUATION_MAX BLEND_EQUATION_ALL(FACTOR_ONE, FACTOR_ONE, BLEND_FUNC_MAX)
+#define BLEND_EQUATION_PRODUCT                                                                     \
+    BLEND_EQUATION_ALL(FACTOR_ZERO, FACTOR_ONE_MINUS_SRC_COLOR, BLEND_FUNC_ADD)
+#define BLEND_EQUATION_SEED BLEND_EQUATION_ALL(FACTOR_DST_ALPHA, FACTOR_ONE, BLEND_FUNC_ADD)
+#define BLEND_EQUATION_REPLACE                                                                     \
+    BLEND_EQUATION_ALL(FACTOR_SRC_ALPHA, FACTOR_ONE_MINUS_SRC_ALPHA, BLEND_FUNC_ADD)
+#define BLEND_EQUATION_KEEP                                                                        \
+    BLEND_EQUATION_ALL(FACTOR_ONE_MINUS_DST_ALPHA, FACTOR_ONE, BLEND_FUNC_ADD)
+
 #endif

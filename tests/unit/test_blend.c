@@ -3,7 +3,8 @@
 
 #include "base/random.h"
 #include "number/blend.h"
-#include "number/op.h"
+#define LANES 1
+#include "number/blend_lanes.h"
 
 #include <math.h>
 
@@ -72,6 +73,30 @@ START_TEST(test_under_rounds)
     ck_assert_float_bits(pixel[0], 0.0f); /* fused: 2^-24 */
     ck_assert_float_bits(pixel[1], op_mul(0x1p-100f, 0x1.001p+0f));
     ck_assert_float_bits(pixel[3], op_mul(0x1.001p+0f, op_sub(1.0f, 0.1f)));
+}
+END_TEST
+
+/* The vector path's blends are those of rgba32f. */
+START_TEST(test_lanes)
+{
+    Random random = random_seed(3);
+    for (int i = 0; i < 400000; i++) {
+        float source[4], pixel[2][4], lanes[2][4];
+        for (int c = 0; c < 4; c++) {
+            uint32_t any = (uint32_t)random_bits(&random), odd = (uint32_t)random_bits(&random) % 8;
+            source[c] = odd == 0  ? INFINITY
+                        : odd < 4 ? (float)random_unit(&random)
+                                  : op_from_bits(any);
+            pixel[0][c] = pixel[1][c] = lanes[0][c] = lanes[1][c] = (float)random_unit(&random);
+        }
+        blend_under(FORMAT_RGBA32F, source, pixel[0]);
+        blend_opaque_seed(FORMAT_RGBA32F, source, pixel[1]);
+        blend_lanes_under(source, lanes[0]);
+        blend_lanes_seed(source, lanes[1]);
+        if (memcmp(pixel, lanes, sizeof pixel) != 0)
+            ck_abort_msg("source (%a, %a, %a, %a): vectors blend otherwise", (double)source[0],
+                         (double)source[1], (double)source[2], (double)source[3]);
+    }
 }
 END_TEST
 
@@ -312,6 +337,7 @@ int main(void)
     tcase_add_test(tcase, test_under_by_hand);
     tcase_add_test(tcase, test_opaque_seed_by_hand);
     tcase_add_test(tcase, test_under_rounds);
+    tcase_add_test(tcase, test_lanes);
     tcase_add_test(tcase, test_under_special);
     tcase_add_test(tcase, test_under16_by_hand);
     tcase_add_test(tcase, test_product16);
