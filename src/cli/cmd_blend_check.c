@@ -166,7 +166,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_SEED:
         return parse_count("--seed", argument, 0, &command->seed);
     case KEY_THREADS:
-        return options_count("--threads", argument, 1, OPTIONS_THREADS_MAX, &command->threads);
+        return options_count("--threads", argument, 1, THREADS_MAX, &command->threads);
     case KEY_FMA:
         return options_fma(argument, &command->fma);
     case KEY_LIST:
