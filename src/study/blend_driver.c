@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "number/op.h"
+#include "study/driver_inputs.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -96,6 +97,9 @@ static Result blend_some(Run *run, VectorSet set, uint64_t index, size_t count)
     for (size_t i = 0; i < count; i++)
         format_fetch(format, run->destination + i * bytes, run->before[i]);
     op_leave(saved);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 4; k++)
+            run->source[i][k] = inputs_bounded(format, run->source[i][k]);
     Result result = run->driver->run(run->driver, &experiment, run->blended);
     if (result != RESULT_OK)
         return result;
