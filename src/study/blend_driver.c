@@ -2,12 +2,14 @@
 
 #include "base/memory.h"
 #include "number/op.h"
+#include "study/driver_inputs.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    RANDOM_DEFAULT = 1 << 20
+    RANDOM_DEFAULT = 1 << 20,
+    PIECES = 8 /* of a part of a set, at least */
 };
 
 typedef struct Run {
@@ -95,6 +97,9 @@ static Result blend_some(Run *run, VectorSet set, uint64_t index, size_t count)
     for (size_t i = 0; i < count; i++)
         format_fetch(format, run->destination + i * bytes, run->before[i]);
     op_leave(saved);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 4; k++)
+            run->source[i][k] = inputs_bounded(format, run->source[i][k]);
     Result result = run->driver->run(run->driver, &experiment, run->blended);
     if (result != RESULT_OK)
         return result;
@@ -107,19 +112,20 @@ static Result blend_some(Run *run, VectorSet set, uint64_t index, size_t count)
                            run->destination, run->results);
 }
 
-/* All of the set, or `count` vectors in EXPERIMENT_TEXELS long pieces spread over it. */
+/* All of the set, or `count` vectors in pieces that are spread over it. */
 static Result run_set(Run *run, VectorSet set)
 {
     VectorSpec spec = spec_of(run->desc, set);
     uint64_t count = set_vectors(run->desc, set), all = count ? vectors_count(&spec) : 0;
+    uint64_t piece = count == all ? EXPERIMENT_TEXELS : (count + PIECES - 1) / PIECES;
     Result result = RESULT_OK;
-    for (uint64_t at = 0; at < count && result == RESULT_OK; at += EXPERIMENT_TEXELS) {
-        size_t some =
-            count - at < EXPERIMENT_TEXELS ? (size_t)(count - at) : (size_t)EXPERIMENT_TEXELS;
-        uint64_t from =
-            count == all ? at : (uint64_t)((double)at / (double)count * (double)(all - some));
-        vectors_make(&spec, from, some, run->source, run->destination);
-        result = blend_some(run, set, from, some);
+    piece = piece < EXPERIMENT_TEXELS ? piece : EXPERIMENT_TEXELS;
+    for (uint64_t at = 0; at < count && result == RESULT_OK; at += piece) {
+        uint64_t some = count - at < piece ? count - at : piece;
+        double part = count > some ? (double)at / (double)(count - some) : 0.0;
+        uint64_t from = count == all ? at : (uint64_t)(part * (double)(all - some));
+        vectors_make(&spec, from, (size_t)some, run->source, run->destination);
+        result = blend_some(run, set, from, (size_t)some);
     }
     return result;
 }

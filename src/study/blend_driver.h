@@ -19,10 +19,10 @@ typedef struct BlendDriverDesc {
 /* Vectors that blend_driver_run blends. */
 uint64_t blend_driver_vectors(const BlendDriverDesc *desc);
 
-/* Blends them with the lab, reads every destination back before it is blended, and judges what came
- * out of it. *changed counts destinations that the driver stored as something else (a NaN as
- * another apart): what was read back is then what the others blend, too. The caller frees *out with
- * blend_report_free. */
+/* Blends them with the lab (sources of RGBA8 bounded as inputs_bounded says), reads every
+ * destination back before it is blended, and judges what came out of it. *changed counts
+ * destinations that the driver stored as something else (a NaN as another apart): what was read
+ * back is then what the others blend, too. The caller frees *out with blend_report_free. */
 Result blend_driver_run(Lab *driver, const BlendDriverDesc *desc, BlendReport *out,
                         uint64_t *changed);
 
