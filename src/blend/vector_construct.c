@@ -267,7 +267,8 @@ static double one_minus_tie(Case *work)
     Random *random = &work->random;
     uint64_t pick = random_bits(random);
     int bits = pick & 1 ? work->keep : 24;
-    double a = ldexp((double)odd(random, 2 + (int)(pick >> 8) % (work->stored - 2)), -bits - 1);
+    double a = ldexp((double)odd(random, 2 + (int)((pick >> 8) % (uint64_t)(work->stored - 2))),
+                     -bits - 1);
     if (pick & 2)
         a += pick & 4 ? ldexp(a, -22) : -ldexp(a, -22);
     return pick & 24 ? a : -2.0 * a;

@@ -27,7 +27,7 @@ static float wide(Random *random, int low, int high)
 static float coarse(Random *random)
 {
     uint64_t bits = random_bits(random);
-    int width = 1 + (int)(bits >> 32) % 13, shift = (int)(bits >> 40) % 12;
+    int width = 1 + (int)((bits >> 32) % 13), shift = (int)((bits >> 40) % 12);
     return ldexpf((float)(bits & ((1u << width) - 1)), -shift);
 }
 
