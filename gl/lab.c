@@ -198,6 +198,10 @@ static Result blend(GlLab *lab, const Experiment *experiment, uint32_t *out)
     if (result != RESULT_OK)
         return result;
     draw_all();
+    if (experiment->before) {
+        lab_read_color(&target, 0, lab->pixels);
+        widen(experiment->format, lab->pixels, EXPERIMENT_TEXELS, experiment->before);
+    }
     set_blend(&experiment->equation);
     result = lab_use(lab, COPY_BODY);
     if (result == RESULT_OK) {

@@ -80,6 +80,8 @@ static void blends(bool fused, const Experiment *experiment, uint32_t *out)
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         unsigned char pixel[16];
         format_store(experiment->format, experiment->b[i], pixel);
+        if (experiment->before)
+            put_codes(experiment->format, pixel, &experiment->before[4 * i]);
         blend_pixels(&experiment->equation, fused, experiment->format, 1, &experiment->a[i], pixel);
         put_codes(experiment->format, pixel, &out[4 * i]);
     }

@@ -170,6 +170,23 @@ Result file_writer_open(const char *path, FileWriter *out)
     return fail_write(path, error);
 }
 
+Result file_writer_standard(FileWriter *out)
+{
+    static const char name[] = "standard output";
+    fflush(stdout);
+    int descriptor = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    *out = (FileWriter){.path = strdup(name)};
+    if (out->path && descriptor >= 0)
+        out->stream = fdopen(descriptor, "wb");
+    if (out->stream)
+        return RESULT_OK;
+    int error = errno;
+    if (descriptor >= 0)
+        close(descriptor);
+    release(out);
+    return fail_write(name, error);
+}
+
 /* Keeps the first error. */
 static Result note(FileWriter *writer, int error)
 {

@@ -21,6 +21,9 @@ typedef struct FileWriter {
  * when path is a directory; *out then needs no close. */
 Result file_writer_open(const char *path, FileWriter *out);
 
+/* The same to the standard output, which stays open. */
+Result file_writer_standard(FileWriter *out);
+
 /* Appends. Failures stick: later calls do nothing, and file_writer_close reports the first one. */
 Result file_writer_put(FileWriter *writer, const void *data, size_t size);
 Result file_writer_print(FileWriter *writer, const char *format, ...)

@@ -103,7 +103,8 @@ void arithmetic_blend(const Arithmetic *arithmetic, const BlendEquation *equatio
         op_leave(saved);
         return;
     }
-    if (arithmetic_codes_blend(arithmetic, equation, format, count, source, pixels))
+    if (arithmetic_codes_blend(arithmetic, equation, format, count, source, pixels) ||
+        arithmetic_floats_blend(arithmetic, equation, format, count, source, pixels))
         return;
     for (size_t i = 0; i < count; i++)
         blend_plain(arithmetic, equation, format, source[i], (char *)pixels + i * bytes);

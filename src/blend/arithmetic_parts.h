@@ -86,6 +86,14 @@ bool arithmetic_codes_blend(const Arithmetic *arithmetic, const BlendEquation *e
                             PixelFormat format, size_t count, const float (*source)[4],
                             void *pixels);
 
+/* The same of float operations to nearest without mistakes, and of sources not stored first. */
+bool arithmetic_floats_blend(const Arithmetic *arithmetic, const BlendEquation *equation,
+                             PixelFormat format, size_t count, const float (*source)[4],
+                             void *pixels);
+
+/* A sum of floating-point steps as stored bits. */
+uint32_t arithmetic_store(const Arithmetic *arithmetic, const FormatInfo *info, double sum);
+
 /* ---- mistakes; without any, what they are given comes back ---- */
 
 typedef enum EarlyOut {

@@ -147,14 +147,12 @@ static ChannelOperands operands_of(const Arithmetic *a, const FormatInfo *info, 
     return o;
 }
 
-/* The sum as a number of the format. */
-static double stored_sum(const Arithmetic *a, const FormatInfo *info, double one, double sum)
+uint32_t arithmetic_store(const Arithmetic *arithmetic, const FormatInfo *info, double sum)
 {
-    if (a->precision == PRECISION_CODES)
-        return mistake_code(a, one, sum);
-    double value = stored(info, a->store, sum);
-    bool tiny = info->kind == KIND_HALF && a->flush && fabs(value) < 0x1p-14;
-    return tiny ? copysign(0.0, value) : value;
+    double value = stored(info, arithmetic->store, sum);
+    if (info->kind == KIND_HALF && arithmetic->flush && fabs(value) < 0x1p-14)
+        value = copysign(0.0, value);
+    return arithmetic_bits(info->kind, value);
 }
 
 uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *equation,
@@ -187,5 +185,7 @@ uint32_t arithmetic_stepwise(const Arithmetic *arithmetic, const BlendEquation *
     if (early == EARLY_OUT_SOURCE)
         out->sum = out->source_product;
     out->sum = mistake_sum(arithmetic, color, out->sum);
-    return arithmetic_bits(info->kind, stored_sum(arithmetic, info, o.one, out->sum));
+    if (arithmetic->precision == PRECISION_CODES)
+        return arithmetic_bits(info->kind, mistake_code(arithmetic, o.one, out->sum));
+    return arithmetic_store(arithmetic, info, out->sum);
 }

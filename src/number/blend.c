@@ -182,17 +182,18 @@ ALWAYS_INLINE void float_channels(bool flush, bool fused, const Part parts[2], i
 {
     float destination_alpha = channels == 4 ? d[3] : 1.0f;
     for (int i = 0; i < channels; i++)
-        out[i] = float_channel(flush, fused, &parts[i == 3], s[i], d[i], s[3], destination_alpha);
+        out[i] = op_canonical(
+            float_channel(flush, fused, &parts[i == 3], s[i], d[i], s[3], destination_alpha));
 }
 
-/* A denormal that went through no operation is flushed where it is stored, and a NaN is ours. */
+/* A denormal that went through no operation is flushed where it is stored. */
 ALWAYS_INLINE void float_pixel(bool fused, const Part parts[2], int channels, const float source[4],
                                float *pixel)
 {
     float out[4];
     float_channels(true, fused, parts, channels, source, pixel, out);
     for (int i = 0; i < channels; i++)
-        pixel[i] = blend_func_extreme(parts[i == 3].func) ? op_flush(out[i]) : op_canonical(out[i]);
+        pixel[i] = blend_func_extreme(parts[i == 3].func) ? op_flush(out[i]) : out[i];
 }
 
 /* Half floats are blended as floats and truncated, and there the driver keeps denormals. */
@@ -212,8 +213,6 @@ ALWAYS_INLINE void half_pixel(HalfBlend *blend, const Part parts[2], const float
     uint32_t flushing = op_suspend();
     blend(parts, source, d, out);
     op_leave(flushing);
-    for (int i = 0; i < 4; i++)
-        out[i] = op_canonical(out[i]);
     format_store(FORMAT_RGBA16F, out, pixel);
 }
 

@@ -46,6 +46,19 @@ uint32_t format_bits(PixelFormat format, const void *pixel, int channel)
     return bits;
 }
 
+void format_set_bits(PixelFormat format, void *pixel, int channel, uint32_t bits)
+{
+    const FormatInfo *info = &infos[format];
+    unsigned char *at = (unsigned char *)pixel + channel * info->channel_bytes;
+    uint16_t word = (uint16_t)bits;
+    if (info->channel_bytes == 1)
+        *at = (unsigned char)bits;
+    else if (info->channel_bytes == 2)
+        memcpy(at, &word, sizeof word);
+    else
+        memcpy(at, &bits, sizeof bits);
+}
+
 float format_channel(PixelFormat format, const void *pixel, int channel)
 {
     const FormatInfo *info = &infos[format];

@@ -45,6 +45,7 @@ size_t format_pixel_bytes(PixelFormat format);
 
 /* Channel `channel` of the pixel at `pixel`: its stored bits, in the low end of the result. */
 uint32_t format_bits(PixelFormat format, const void *pixel, int channel);
+void format_set_bits(PixelFormat format, void *pixel, int channel, uint32_t bits);
 
 /* Channel `channel` of the pixel at `pixel`, as a number: floats as they are, halves exactly,
  * unorm as integer / unorm_max in double, rounded to float. */

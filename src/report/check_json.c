@@ -3,13 +3,6 @@
 #include "report/check.h"
 #include "report/document.h"
 
-static json_t *hex(double value)
-{
-    char text[48];
-    snprintf(text, sizeof text, "%a", value);
-    return json_string(text);
-}
-
 static json_t *worst(Document *json, const JudgeWorst *pixel)
 {
     if (!pixel->is)
@@ -19,9 +12,9 @@ static json_t *worst(Document *json, const JudgeWorst *pixel)
     document_put(json, object, "y", json_integer(pixel->y));
     document_put(json, object, "channel", json_integer(pixel->channel));
     document_put(json, object, "theirs", document_real(pixel->theirs));
-    document_put(json, object, "theirs_hex", hex(pixel->theirs));
+    document_put(json, object, "theirs_hex", document_hex(pixel->theirs));
     document_put(json, object, "reference", document_real(pixel->reference));
-    document_put(json, object, "reference_hex", hex(pixel->reference));
+    document_put(json, object, "reference_hex", document_hex(pixel->reference));
     document_put(json, object, "ulp", pixel->ulp < 0.0 ? json_null() : document_real(pixel->ulp));
     return object;
 }

@@ -21,19 +21,9 @@ extern const char contract_peel_dump_h[], contract_peel_shade_h[];
 static json_t *hex(Document *json, const float *values, size_t count)
 {
     json_t *array = json_array();
-    for (size_t i = 0; i < count; i++) {
-        char text[32];
-        snprintf(text, sizeof text, "%a", (double)values[i]);
-        document_append(json, array, json_string(text));
-    }
+    for (size_t i = 0; i < count; i++)
+        document_append(json, array, document_hex((double)values[i]));
     return array;
-}
-
-static json_t *hex1(float value)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%a", (double)value);
-    return json_string(text);
 }
 
 static json_t *make_lights(Document *json, const View *view)
@@ -45,7 +35,7 @@ static json_t *make_lights(Document *json, const View *view)
         document_put(json, object, "position", hex(json, light->position, 3));
         document_put(json, object, "color", hex(json, light->color, 3));
         document_put(json, object, "attenuation", hex(json, light->attenuation, 3));
-        document_put(json, object, "inverse_range2", hex1(light->inverse_range2));
+        document_put(json, object, "inverse_range2", document_hex((double)light->inverse_range2));
         document_append(json, array, object);
     }
     return array;
@@ -65,11 +55,11 @@ static json_t *make_materials(Document *json, const Scene *scene)
         json_t *object = json_object();
         document_put(json, object, "name", json_string(material->name));
         document_put(json, object, "base_color", hex(json, material->base_color, 4));
-        document_put(json, object, "roughness", hex1(material->roughness));
-        document_put(json, object, "metallic", hex1(material->metallic));
-        document_put(json, object, "occlusion", hex1(material->occlusion));
+        document_put(json, object, "roughness", document_hex((double)material->roughness));
+        document_put(json, object, "metallic", document_hex((double)material->metallic));
+        document_put(json, object, "occlusion", document_hex((double)material->occlusion));
         document_put(json, object, "alpha_mode", json_string(modes[material->alpha_mode]));
-        document_put(json, object, "alpha_cutoff", hex1(material->alpha_cutoff));
+        document_put(json, object, "alpha_cutoff", document_hex((double)material->alpha_cutoff));
         document_put(json, object, "double_sided", json_boolean(material->double_sided));
         document_put(json, object, "base_color_texture",
                      texture_index(material->base_color_texture));

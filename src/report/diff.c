@@ -2,23 +2,11 @@
  * them go on working. */
 #include "report/diff.h"
 
+#include "number/text.h"
 #include "report/summary.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* The fewest digits that read back as the same float. */
-static const char *shortest(double value, char out[SUMMARY_NUMBER])
-{
-    if (isnan(value))
-        return "nan";
-    int digits = fabs(value) >= 1.0 && fabs(value) < 1e9 ? 1 + (int)log10(fabs(value)) : 1;
-    do
-        snprintf(out, SUMMARY_NUMBER, "%.*g", digits, value);
-    while ((float)strtod(out, NULL) != (float)value && ++digits <= 17);
-    return out;
-}
 
 static void print_values(const DiffPart *part, const DiffPixel *pixel, FILE *out)
 {
@@ -29,7 +17,7 @@ static void print_values(const DiffPart *part, const DiffPixel *pixel, FILE *out
         for (int c = 0; c < part->channel_count; c++) {
             if (!part->channels[c].kinds[side])
                 continue;
-            fprintf(out, "%s%s", separator, shortest(pixel->values[side][c], number));
+            fprintf(out, "%s%s", separator, text_float(pixel->values[side][c], number));
             separator = ", ";
         }
     }
@@ -156,7 +144,7 @@ static void print_worst(const ReportDiff *diff, const DiffPart *part, FILE *out)
         bool counts = pixel->ulp == UINT32_MAX && part->deep;
         fprintf(out, "  %-12s %-12s %11s %13s  ", place,
                 counts ? "samples" : part->channels[pixel->channel].name,
-                isinf(pixel->error) ? "not finite" : shortest(pixel->error, error),
+                isinf(pixel->error) ? "not finite" : text_float(pixel->error, error),
                 pixel->ulp == UINT32_MAX ? "-" : summary_count(pixel->ulp, ulp));
         if (classes) {
             size_t at = (size_t)pixel->y * (size_t)part->width + (size_t)pixel->x;

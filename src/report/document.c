@@ -1,6 +1,7 @@
 #include "report/document.h"
 
 #include "base/file.h"
+#include "number/text.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,6 +41,12 @@ json_t *document_string(const char *text)
     value = ascii ? json_string(ascii) : NULL;
     free(ascii);
     return value;
+}
+
+json_t *document_hex(double value)
+{
+    char text[TEXT_NUMBER];
+    return json_string(text_hex(value, text));
 }
 
 static int write_text(const char *text, size_t size, void *writer)

@@ -21,6 +21,7 @@ void document_append(Document *json, json_t *array, json_t *value);
 json_t *document_real(double value);
 json_t *document_count(uint64_t value);
 json_t *document_string(const char *text);
+json_t *document_hex(double value); /* "0x1.8p-1", "inf", "nan" */
 
 /* Takes over root. Written to a temporary name and renamed; NO_MEMORY after a failure. */
 Result document_write(const Document *json, json_t *root, const char *path);

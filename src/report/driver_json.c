@@ -8,11 +8,9 @@
 
 static json_t *number(Document *json, float x)
 {
-    char hex[32];
     json_t *object = json_object();
-    snprintf(hex, sizeof hex, "%a", (double)x);
     document_put(json, object, "value", document_real((double)x));
-    document_put(json, object, "hex", json_string(hex));
+    document_put(json, object, "hex", document_hex((double)x));
     return object;
 }
 

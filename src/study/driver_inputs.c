@@ -57,6 +57,12 @@ float inputs_value(Random *random, InputSet set, double codes)
     return pick & 3 ? specials[(pick >> 2) % count] : (float)random_unit(random);
 }
 
+float inputs_bounded(PixelFormat format, float x)
+{
+    bool far = format == FORMAT_RGBA8 && (x >= 8e6f || x <= -8e6f);
+    return !far ? x : x > 0.0f ? 1.5f : -1.5f;
+}
+
 /* ---- triangles ---- */
 
 /* From pixels to clip space with w. */

@@ -21,6 +21,10 @@ typedef enum InputSet {
 /* One value. codes: the greatest code of INPUT_CODES. */
 float inputs_value(Random *random, InputSet set, double codes);
 
+/* x as shaders store it: without AVX the driver turns 2^31/255 and more, of either sign, into 0 in
+ * RGBA8, so they clamp before; here to 1.5 or -1.5. */
+float inputs_bounded(PixelFormat format, float x);
+
 /* Kinds of triangles, as corners in clip space. */
 typedef enum TriangleKind {
     TRIANGLE_LARGE,       /* w 1, inside the view volume, some pixels' area at least */
