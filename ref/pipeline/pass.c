@@ -163,26 +163,84 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass
     return result;
 }
 
+static void free_bins(Bins *bins)
+{
+    free(bins->first);
+    free(bins->item);
+}
+
 void pass_free(Pass *pass)
 {
-    free(pass->opaque_bins.first);
-    free(pass->opaque_bins.item);
-    free(pass->transparent_bins.first);
-    free(pass->transparent_bins.item);
+    free_bins(&pass->opaque_bins);
+    free_bins(&pass->transparent_bins);
     geometry_free(&pass->geometry);
     pool_destroy(pass->pool);
     view_free(&pass->view);
     *pass = (Pass){0};
 }
 
+static bool meets(const Primitive *primitive, PixelRect rect)
+{
+    const PixelRect *box = &primitive->box;
+    return box->x0 <= rect.x1 && box->x1 >= rect.x0 && box->y0 <= rect.y1 && box->y1 >= rect.y0;
+}
+
+/* The one tile's bin. */
+static Result bin_part(const PrimitiveList *list, PixelRect rect, Bins *out)
+{
+    size_t count = 0, room = 0;
+    Result result = RESULT_OK;
+    out->first = memory_array(2, sizeof *out->first);
+    if (!out->first)
+        return RESULT_NO_MEMORY;
+    for (size_t i = 0; i < list->count && result == RESULT_OK; i++) {
+        if (!meets(&list->items[i], rect))
+            continue;
+        void *item = out->item;
+        result = memory_grow(&item, &room, count + 1, sizeof *out->item);
+        out->item = item;
+        if (result == RESULT_OK)
+            out->item[count++] = (uint32_t)i;
+    }
+    out->first[1] = count;
+    return result;
+}
+
+Result pass_part(const Pass *whole, const RenderDesc *desc, PixelRect rect, Pool *pool, Pass *out)
+{
+    *out = *whole;
+    out->desc = desc;
+    out->pool = pool;
+    out->opaque_bins = out->transparent_bins = (Bins){0};
+    out->view.width = rect.x1 - rect.x0 + 1;
+    out->view.height = rect.y1 - rect.y0 + 1;
+    out->x0 = rect.x0;
+    out->y0 = rect.y0;
+    out->tile = TILE_MAX;
+    out->tile_columns = out->tile_count = 1;
+    Result result = bin_part(&out->geometry.opaque, rect, &out->opaque_bins);
+    if (result == RESULT_OK)
+        result = bin_part(&out->geometry.transparent, rect, &out->transparent_bins);
+    if (result != RESULT_OK)
+        pass_part_free(out);
+    return result;
+}
+
+void pass_part_free(Pass *part)
+{
+    free_bins(&part->opaque_bins);
+    free_bins(&part->transparent_bins);
+    *part = (Pass){0};
+}
+
 PixelRect pass_tile_rect(const Pass *pass, uint32_t tile)
 {
-    int x0 = (int)(tile % pass->tile_columns) * pass->tile;
-    int y0 = (int)(tile / pass->tile_columns) * pass->tile;
+    int x0 = pass->x0 + (int)(tile % pass->tile_columns) * pass->tile;
+    int y0 = pass->y0 + (int)(tile / pass->tile_columns) * pass->tile;
     int x1 = x0 + pass->tile - 1, y1 = y0 + pass->tile - 1;
-    return (PixelRect){(int16_t)x0, (int16_t)y0,
-                       (int16_t)(x1 < pass->view.width ? x1 : pass->view.width - 1),
-                       (int16_t)(y1 < pass->view.height ? y1 : pass->view.height - 1)};
+    int right = pass->x0 + pass->view.width - 1, top = pass->y0 + pass->view.height - 1;
+    return (PixelRect){(int16_t)x0, (int16_t)y0, (int16_t)(x1 < right ? x1 : right),
+                       (int16_t)(y1 < top ? y1 : top)};
 }
 
 void pass_counts_add(PassCounts *sum, const PassCounts *tile)

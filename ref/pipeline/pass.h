@@ -19,10 +19,24 @@ typedef struct Bins {
     uint32_t *item; /* indices into the list */
 } Bins;
 
+/* What the definition path shades and blends, where somebody asks: a pixel's history. The callbacks
+ * are called in flushing mode, by the thread that draws; pixel: as stage_pixel counts; primitive:
+ * whose fragment it is, PRIMITIVE_NONE where it is of several or of none. */
+typedef struct PassWatch PassWatch;
+struct PassWatch {
+    void (*shade)(PassWatch *watch, size_t pixel, uint32_t primitive, const ShadeForm *form,
+                  const Texel *texel, const float source[4]);
+    void (*blend)(PassWatch *watch, size_t pixel, uint32_t primitive, const char *target,
+                  const char *equation, PixelFormat format, const float source[4],
+                  const void *before, const void *after);
+};
+
 typedef struct Pass {
     const RenderDesc *desc;
     const Scene *scene;
-    View view;
+    View view;  /* its width and height are the buffers', which may be of a part of the frame */
+    int x0, y0; /* window coordinates of the buffers' lower left pixel; 0 of a whole frame */
+    PassWatch *watch; /* may be NULL */
     Pool *pool;
     Geometry geometry;
     Bins opaque_bins, transparent_bins;
@@ -40,6 +54,13 @@ typedef struct Pass {
 Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass *out);
 void pass_free(Pass *pass);
 
+/* A part of the frame, to be drawn alone by a definition path: buffers of the rectangle's size, the
+ * same geometry and bits. desc: whole's, but with the rectangle's width and height; it and whole
+ * must outlive *out. rect: at most TILE_MAX pixels a side, inside the frame. NO_MEMORY on failure.
+ * The caller frees with pass_part_free. */
+Result pass_part(const Pass *whole, const RenderDesc *desc, PixelRect rect, Pool *pool, Pass *out);
+void pass_part_free(Pass *part);
+
 /* Accounts for bytes about to be allocated; NO_MEMORY and a message past the limit. */
 Result pass_reserve(Pass *pass, uint64_t bytes);
 
@@ -49,7 +70,8 @@ PixelRect pass_tile_rect(const Pass *pass, uint32_t tile);
 /* The tile that window pixel (x, y) is in. */
 static inline uint32_t pass_tile_at(const Pass *pass, int x, int y)
 {
-    return (uint32_t)(y / pass->tile) * pass->tile_columns + (uint32_t)(x / pass->tile);
+    return (uint32_t)((y - pass->y0) / pass->tile) * pass->tile_columns +
+           (uint32_t)((x - pass->x0) / pass->tile);
 }
 
 static inline void pass_setup(const Pass *pass, const Primitive *primitive, Setup *out)
@@ -119,6 +141,24 @@ static inline bool pass_behind(const Pass *pass, uint32_t key, uint32_t previous
     float z = depth_fetch(pass->depth_format, key);
     float fetched = depth_fetch(pass->depth_format, previous);
     return pass->reversed ? z < op_sub(fetched, bias) : z > op_add(fetched, bias);
+}
+
+/* Of two primitives at one depth: whether a is in front of b, where the order is by both. */
+static inline bool pass_id_before(const Pass *pass, uint32_t a, uint32_t b)
+{
+    return pass->desc->depth_func == DEPTH_LEQUAL ? a > b : a < b;
+}
+
+/* Whether a fragment comes after the previous layer, by depth and primitive; previous_id:
+ * PRIMITIVE_NONE where that was empty, so that nothing comes. */
+static inline bool pass_comes_after(const Pass *pass, uint32_t key, uint32_t id, uint32_t previous,
+                                    uint32_t previous_id)
+{
+    if (previous_id == PRIMITIVE_NONE)
+        return false;
+    if (key == previous)
+        return pass_id_before(pass, previous_id, id);
+    return pass_behind(pass, key, previous);
 }
 
 /* Whether further peels would have come to it: behind the previous layer, and not discarded with

@@ -27,6 +27,16 @@ static const struct {
     [METHOD_PAINTER] = {painter_render, NULL},
 };
 
+Result pipeline_definition(Pass *pass, TraceSink *trace, Frame *out)
+{
+    const RenderDesc *desc = pass->desc;
+    *out = (Frame){.fused = pass->fused};
+    Result result = image_create(desc->width, desc->height, FORMAT_RGBA32F, &out->final);
+    if (result == RESULT_OK)
+        result = image_create(desc->width, desc->height, FORMAT_RGBA8, &out->display);
+    return result == RESULT_OK ? methods[desc->method].definition(pass, trace, out) : result;
+}
+
 static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
 {
     Pass pass;

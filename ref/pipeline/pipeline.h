@@ -8,4 +8,9 @@
  * one the tile-resident path, which gives the same bits. */
 Result pipeline_render(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out);
 
+/* The definition path alone, of what pass (ref/pipeline/pass.h) draws. On failure *out holds what
+ * there is; the caller frees it. */
+struct Pass;
+Result pipeline_definition(struct Pass *pass, TraceSink *trace, Frame *out);
+
 #endif

@@ -20,6 +20,19 @@ typedef struct ShadeForm {
  * alpha test discards. Flushing mode. */
 bool shade_pixel(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
 
+/* What a light adds to a pixel, and the sum up to it. */
+typedef struct ShadeTerm {
+    float n_dot_l, n_dot_h, h_dot_v, distance;
+    float distribution, geometry, fresnel[3], specular; /* D, G, F, and s of frame/shading.h */
+    float attenuation;
+    float term[3], sum[3];
+} ShadeTerm;
+
+/* The terms of shade_pixel's sum: terms has room for view->light_count; ambient: what comes after
+ * them. Not of SHADING_PHONG. Flushing mode. */
+void shade_terms(const View *view, const ShadeForm *form, const Texel *texel, ShadeTerm *terms,
+                 float ambient[3]);
+
 /* The same without the alpha test, and faster: lights that change no bit are left out. */
 void shade_skipping(const View *view, const ShadeForm *form, const Texel *texel, float source[4]);
 

@@ -176,32 +176,51 @@ static inline void shade_half_vector(const ShadeForm *form, const Surface *surfa
     out->fresnel_weight = lanes_mul(lanes_mul(x2, x2), x);
 }
 
+/* What one light's term is made of. */
+typedef struct Reflection {
+    Lanes distribution, geometry, specular, attenuation;
+    Lanes fresnel[3], term[3];
+} Reflection;
+
 /* Stage 4. */
-static inline void shade_add(bool back_light, const Surface *surface, const ViewLight *light,
-                             const Incidence *in, Lanes sum[3])
+static inline __attribute__((always_inline)) void
+shade_reflection(bool back_light, const Surface *surface, const ViewLight *light,
+                 const Incidence *in, Reflection *out)
 {
     Lanes one = lanes_all(1.0f), zero = lanes_all(0.0f), n_dot_l = in->n_dot_l;
-    Lanes distribution = lanes_div(
+    out->distribution = lanes_div(
         surface->a2, lanes_mul(lanes_mul(lanes_all(SHADING_PI), in->denominator), in->denominator));
     Lanes geometry_light =
         lanes_div(n_dot_l, lanes_add(lanes_mul(n_dot_l, surface->one_minus_k), surface->k));
-    Lanes specular = lanes_div(
-        lanes_mul(distribution, lanes_mul(surface->geometry_view, geometry_light)),
+    out->geometry = lanes_mul(surface->geometry_view, geometry_light);
+    out->specular = lanes_div(
+        lanes_mul(out->distribution, out->geometry),
         lanes_add(lanes_mul(surface->four_n_dot_v, n_dot_l), lanes_all(SHADING_SPECULAR_BIAS)));
-    Lanes attenuation = lanes_div(one, in->falloff);
+    out->attenuation = lanes_div(one, in->falloff);
     if (light->inverse_range2 > 0.0f)
-        attenuation = lanes_mul(attenuation, in->window);
+        out->attenuation = lanes_mul(out->attenuation, in->window);
     for (int i = 0; i < 3; i++) {
         Lanes lambert = surface->lambert[i];
         if (back_light)
             lambert = lanes_where_less(in->u, zero, zero, lambert);
         Lanes fresnel =
             lanes_add(surface->f0[i], lanes_mul(surface->one_minus_f0[i], in->fresnel_weight));
-        Lanes reflected =
-            lanes_add(lanes_mul(lanes_sub(one, fresnel), lambert), lanes_mul(fresnel, specular));
-        Lanes radiance = lanes_mul(lanes_mul(lanes_all(light->color[i]), attenuation), n_dot_l);
-        sum[i] = lanes_add(sum[i], lanes_mul(reflected, radiance));
+        Lanes reflected = lanes_add(lanes_mul(lanes_sub(one, fresnel), lambert),
+                                    lanes_mul(fresnel, out->specular));
+        Lanes radiance =
+            lanes_mul(lanes_mul(lanes_all(light->color[i]), out->attenuation), n_dot_l);
+        out->fresnel[i] = fresnel;
+        out->term[i] = lanes_mul(reflected, radiance);
     }
+}
+
+static inline void shade_add(bool back_light, const Surface *surface, const ViewLight *light,
+                             const Incidence *in, Lanes sum[3])
+{
+    Reflection reflection;
+    shade_reflection(back_light, surface, light, in, &reflection);
+    for (int i = 0; i < 3; i++)
+        sum[i] = lanes_add(sum[i], reflection.term[i]);
 }
 
 /* Adds what `count` lights, at most SHADE_CHUNK, reflect, in their order. */
@@ -357,6 +376,15 @@ static inline void shade_whole_lambert(const ShadeBatch *batch, Surface *surface
         surface->lambert[i] = lanes_mul(lanes_load(batch->diffuse[i]), rest);
 }
 
+static inline __attribute__((always_inline)) void
+shade_ambient(const View *view, const ShadeBatch *batch, Lanes ambient[3])
+{
+    for (int i = 0; i < 3; i++)
+        ambient[i] =
+            lanes_mul(lanes_mul(lanes_all(view->ambient[i]), lanes_load(batch->diffuse[i])),
+                      lanes_load(batch->material[2]));
+}
+
 /* Fills batch->source. skip: leave out lights where that changes no bit; without it this is the
  * definition. Flushing mode. */
 static inline void shade_batch_skipping(const View *view, const ShadeForm *form, bool skip,
@@ -375,13 +403,10 @@ static inline void shade_batch_skipping(const View *view, const ShadeForm *form,
         skip = skip && shade_may_skip(view, form, batch, &surface);
         shade_lights(view, form, &surface, skip, sum);
     }
-    Lanes alpha = lanes_load(batch->diffuse[3]);
-    for (int i = 0; i < 3; i++) {
-        Lanes ambient =
-            lanes_mul(lanes_mul(lanes_all(view->ambient[i]), lanes_load(batch->diffuse[i])),
-                      lanes_load(batch->material[2]));
-        lanes_store(batch->source[i], lanes_mul(lanes_add(sum[i], ambient), alpha));
-    }
+    Lanes alpha = lanes_load(batch->diffuse[3]), ambient[3];
+    shade_ambient(view, batch, ambient);
+    for (int i = 0; i < 3; i++)
+        lanes_store(batch->source[i], lanes_mul(lanes_add(sum[i], ambient[i]), alpha));
     lanes_store(batch->source[3], alpha);
 }
 

@@ -10,6 +10,7 @@ typedef struct ShadedFragment {
     float source[4]; /* premultiplied colour, alpha */
     float distance;  /* |z| in view space */
     float depth;     /* gl_FragCoord.z */
+    uint32_t primitive;
 } ShadedFragment;
 
 /* The context of a SetupVisit; &draw goes to stage_draw. */
@@ -41,7 +42,8 @@ static inline bool shaded_fragment(const ShadedVisit *visit, const Setup *setup,
     fragment_surface(pass, setup, visit->draw.primitive, x, y, &texel);
     out->distance = op_abs(texel.position[2]);
     out->depth = depth.z;
-    if (!mutate_shade(pass, &form, &texel, out->source))
+    out->primitive = visit->draw.primitive->id;
+    if (!stage_shade(stage, out->pixel, out->primitive, &form, &texel, out->source))
         return false;
     visit->counts->shaded++;
     return true;

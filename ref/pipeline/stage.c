@@ -11,12 +11,12 @@
 /* ---- geometry ---- */
 
 /* Forward: the lit, premultiplied colour takes the place of the surface's own. */
-static void light_texel(const StageVisit *visit, Texel *texel)
+static void light_texel(const StageVisit *visit, size_t pixel, uint32_t primitive, Texel *texel)
 {
     const Stage *stage = visit->stage;
     ShadeForm form = pass_shade_form(stage->pass, visit->target != &stage->opaque);
     float color[4] = {0.0f, 0.0f, 0.0f, texel->diffuse[3]};
-    mutate_shade(stage->pass, &form, texel, color);
+    stage_shade(stage, pixel, primitive, &form, texel, color);
     memcpy(texel->diffuse, color, sizeof color);
 }
 
@@ -36,8 +36,8 @@ void stage_shade_winners(const StageVisit *visit, uint32_t tile)
             pass_setup(pass, primitive, &setup);
             fragment_shade(pass, &setup, primitive, x, y, &texel);
             if (visit->stage->forward)
-                light_texel(visit, &texel);
-            gbuffer_store(visit->target, x, pass->view.height - 1 - y, &texel);
+                light_texel(visit, pixel, primitive->id, &texel);
+            gbuffer_store(visit->target, stage_column(pass, x), stage_row(pass, y), &texel);
         }
 }
 
@@ -70,9 +70,10 @@ static bool differs_from(const Stage *stage, int x, int y, const Texel *texel)
     const Pass *pass = stage->pass;
     const GBuffer *source = stage->lit;
     Texel other;
-    if (x < 0 || y < 0 || x >= pass->view.width || y >= pass->view.height)
+    int column = stage_column(pass, x), row = stage_row(pass, y);
+    if (column < 0 || row < 0 || column >= pass->view.width || row >= pass->view.height)
         return false;
-    gbuffer_load(source, x, pass->view.height - 1 - y, &other);
+    gbuffer_load(source, column, row, &other);
     if (other.material[3] == 0.0f)
         return true;
     fragment_decode(pass, stage_key(&source->depth, stage_pixel(pass, x, y)), x, y, &other);
@@ -92,22 +93,38 @@ static inline bool light_pixel(const Stage *stage, const ShadeForm *form, int x,
                                const float material[4], Texel *texel, float color[4])
 {
     const Pass *pass = stage->pass;
-    gbuffer_load(stage->lit, x, pass->view.height - 1 - y, texel);
+    gbuffer_load(stage->lit, stage_column(pass, x), stage_row(pass, y), texel);
     if (stage->lit->material.format == FORMAT_NONE)
         memcpy(texel->material, material, 4 * sizeof *material);
     if (stage->forward) {
         memcpy(color, texel->diffuse, 4 * sizeof *color);
         return color[3] > stage->alpha_test;
     }
-    fragment_decode(pass, stage_key(&stage->lit->depth, stage_pixel(pass, x, y)), x, y, texel);
-    return mutate_shade(pass, form, texel, color);
+    size_t pixel = stage_pixel(pass, x, y);
+    fragment_decode(pass, stage_key(&stage->lit->depth, pixel), x, y, texel);
+    return stage_shade(stage, pixel, ((const uint32_t *)stage->lit->primitive.pixels)[pixel], form,
+                       texel, color);
+}
+
+static inline void blend_pixel(const Stage *stage, bool transparent, size_t pixel,
+                               const float color[4])
+{
+    const Pass *pass = stage->pass;
+    const Image *accum = &stage->accum;
+    uint32_t primitive = ((const uint32_t *)stage->lit->primitive.pixels)[pixel];
+    if (pass->desc->mutations)
+        mutate_blend(pass, transparent, color,
+                     (char *)accum->pixels + pixel * format_pixel_bytes(accum->format));
+    else if (!transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED)
+        stage_blend(stage, blend_opaque_seed, "opaque_seed", "accum", primitive, color, accum,
+                    pixel);
+    else
+        stage_blend(stage, blend_under, "under", "accum", primitive, color, accum, pixel);
 }
 
 static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
 {
     const Pass *pass = stage->pass;
-    bool seed = !transparent && pass->desc->opaque_blend == OPAQUE_BLEND_SEED;
-    bool mutated = pass->desc->mutations != 0;
     bool edges = render_desc_edges(pass->desc);
     ShadeForm form = pass_shade_form(pass, transparent);
     PixelRect rect = pass_tile_rect(pass, tile);
@@ -123,13 +140,7 @@ static inline void light_tile(Stage *stage, uint32_t tile, bool transparent)
             if (edges && is_edge(stage, x, y, &texel))
                 color[0] = color[1] = color[2] = 0.0f;
             details_put_color(&stage->details, stage_pixel(pass, x, y), color);
-            void *pixel = image_pixel(&stage->accum, x, pass->view.height - 1 - y);
-            if (mutated)
-                mutate_blend(pass, transparent, color, pixel);
-            else if (seed)
-                blend_opaque_seed(stage->accum.format, color, pixel);
-            else
-                blend_under(stage->accum.format, color, pixel);
+            blend_pixel(stage, transparent, stage_pixel(pass, x, y), color);
         }
 }
 
@@ -176,7 +187,7 @@ static void resolve_tile(Stage *stage, uint32_t tile)
     PixelRect rect = pass_tile_rect(stage->pass, tile);
     for (int y = rect.y0; y <= rect.y1; y++)
         for (int x = rect.x0; x <= rect.x1; x++) {
-            resolve_pixel(stage, x, stage->pass->view.height - 1 - y);
+            resolve_pixel(stage, stage_column(stage->pass, x), stage_row(stage->pass, y));
             pass_count_fragments(&stage->tile_counts[tile],
                                  stage->fragments[stage_pixel(stage->pass, x, y)]);
         }
@@ -302,7 +313,8 @@ void stage_count_remaining(Stage *stage, uint32_t tile)
         for (int x = rect.x0; x <= rect.x1; x++) {
             float accum[4];
             format_fetch(stage->accum.format,
-                         image_pixel(&stage->accum, x, pass->view.height - 1 - y), accum);
+                         image_pixel(&stage->accum, stage_column(pass, x), stage_row(pass, y)),
+                         accum);
             pass_count_remaining(&stage->tile_counts[tile],
                                  stage->remaining[stage_pixel(pass, x, y)], accum[3]);
         }

@@ -75,12 +75,55 @@ void stage_count_drawn(const GBuffer *layer, const Image *previous_depth, uint64
 /* Adds a tile's stage->remaining, and the transmittance in front of them, to its counts. */
 void stage_count_remaining(Stage *stage, uint32_t tile);
 
+/* ---- shading and blending, watched where somebody asks ---- */
+
+typedef void (*StageBlend)(PixelFormat format, const float source[4], void *pixel);
+
+/* equation: blend's name, number/blend.h's; target: the buffer's. */
+static inline void stage_blend(const Stage *stage, StageBlend blend, const char *equation,
+                               const char *target, uint32_t primitive, const float source[4],
+                               const Image *image, size_t pixel)
+{
+    PassWatch *watch = stage->pass->watch;
+    unsigned char before[16];
+    size_t bytes = format_pixel_bytes(image->format);
+    void *at = (char *)image->pixels + pixel * bytes;
+    if (watch)
+        memcpy(before, at, bytes);
+    blend(image->format, source, at);
+    if (watch)
+        watch->blend(watch, pixel, primitive, target, equation, image->format, source, before, at);
+}
+
+/* As mutate_shade. */
+static inline bool stage_shade(const Stage *stage, size_t pixel, uint32_t primitive,
+                               const ShadeForm *form, const Texel *texel, float source[4])
+{
+    const Pass *pass = stage->pass;
+    if (!mutate_shade(pass, form, texel, source))
+        return false;
+    if (pass->watch)
+        pass->watch->shade(pass->watch, pixel, primitive, form, texel, source);
+    return true;
+}
+
 /* ---- pieces of a geometry pass ---- */
 
-/* Pixel (x, y), y up, in buffers whose rows run from the top. */
+/* Where window column x and row y, y up, are in the buffers, whose rows run from the top. */
+static inline int stage_column(const Pass *pass, int x)
+{
+    return x - pass->x0;
+}
+
+static inline int stage_row(const Pass *pass, int y)
+{
+    return pass->view.height - 1 - (y - pass->y0);
+}
+
+/* Pixel (x, y), y up, in them. */
 static inline size_t stage_pixel(const Pass *pass, int x, int y)
 {
-    return (size_t)(pass->view.height - 1 - y) * (size_t)pass->view.width + (size_t)x;
+    return (size_t)stage_row(pass, y) * (size_t)pass->view.width + (size_t)stage_column(pass, x);
 }
 
 static inline uint32_t stage_key(const Image *depth, size_t pixel)

@@ -13,12 +13,12 @@ typedef struct Sums {
 static void add(const Stage *stage, size_t pixel, const ShadedFragment *fragment)
 {
     const Sums *sums = stage->method;
-    size_t bytes = format_pixel_bytes(sums->sum.format);
     float sum[4], second[4] = {0};
     sums->method->write(stage->pass->desc, fragment, sum, second);
-    blend_add(sums->sum.format, sum, (char *)sums->sum.pixels + pixel * bytes);
+    stage_blend(stage, blend_add, "add", "sum", fragment->primitive, sum, &sums->sum, pixel);
     if (sums->second.pixels)
-        sums->method->blend(FORMAT_R32F, second, (float *)sums->second.pixels + pixel);
+        stage_blend(stage, sums->method->blend, sums->method->equation, sums->method->second,
+                    fragment->primitive, second, &sums->second, pixel);
 }
 
 static void visit_fragment(void *context, const Setup *setup, int x, int y)
@@ -57,15 +57,16 @@ static void combine_tile(Stage *stage, uint32_t tile)
     PixelRect rect = pass_tile_rect(stage->pass, tile);
     for (int y = rect.y0; y <= rect.y1; y++)
         for (int x = rect.x0; x <= rect.x1; x++) {
-            int row = stage->pass->view.height - 1 - y;
-            const void *stored = image_pixel(&sums->sum, x, row);
+            int column = stage_column(stage->pass, x), row = stage_row(stage->pass, y);
+            const void *stored = image_pixel(&sums->sum, column, row);
             float sum[4], source[4], second = 0.0f;
             stage->tile_counts[tile].overflowed += format_overflowed(sums->sum.format, stored);
             format_fetch(sums->sum.format, stored, sum);
             if (sums->second.pixels)
-                second = *(const float *)image_pixel(&sums->second, x, row);
+                second = *(const float *)image_pixel(&sums->second, column, row);
             if (sums->method->combine(sum, second, source))
-                blend_under(stage->accum.format, source, image_pixel(&stage->accum, x, row));
+                stage_blend(stage, blend_under, "under", "accum", PRIMITIVE_NONE, source,
+                            &stage->accum, stage_pixel(stage->pass, x, y));
         }
 }
 

@@ -14,10 +14,11 @@
 #include "ref/pipeline/shaded.h"
 
 typedef struct SumsMethod {
-    const char *name;   /* its buffers are traced as "name.sum" and "name.<second>", step 1 */
-    const char *second; /* "" where there is none */
-    float start;        /* the second is cleared to this, the sum to 0 */
-    void (*blend)(PixelFormat format, const float source[4], void *pixel); /* of the second */
+    const char *name;     /* its buffers are traced as "name.sum" and "name.<second>", step 1 */
+    const char *second;   /* "" where there is none */
+    float start;          /* the second is cleared to this, the sum to 0 */
+    StageBlend blend;     /* of the second */
+    const char *equation; /* its name */
     /* What a fragment writes. Flushing mode, as below. */
     void (*write)(const RenderDesc *desc, const ShadedFragment *fragment, float sum[4],
                   float second[4]);

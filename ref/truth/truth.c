@@ -6,6 +6,7 @@
 #include "frame/shading.h"
 #include "ref/truth/bound.h"
 #include "ref/truth/fragments.h"
+#include "ref/truth/lit.h"
 #include "ref/truth/radiance.h"
 
 #include <float.h>
@@ -37,57 +38,6 @@ typedef struct Render {
 
 /* ---- shading and compositing ---------------------------------------------------------------- */
 
-static Surface find_surface(const Render *render, const Fragment *fragment, int x, int y)
-{
-    const SoupVertex *vertices[3];
-    soup_vertices(&render->soup, fragment->triangle, vertices);
-    const Corner *corners[3] = {&vertices[0]->corner, &vertices[1]->corner, &vertices[2]->corner};
-    ExactPoint point;
-    exact_at(corners, x, y, &point);
-    bool turned = fragment->back && render->desc->normals == NORMALS_FACED;
-    Surface surface = {0};
-    for (int i = 0; i < 3; i++) {
-        double position = 0.0, normal = 0.0;
-        for (int corner = 0; corner < 3; corner++) {
-            position += point.weight[corner] * vertices[corner]->position[i];
-            normal += point.weight[corner] * vertices[corner]->normal[i];
-        }
-        surface.position[i] = position;
-        surface.normal[i] = turned ? -normal : normal;
-    }
-    soup_material(&render->soup, fragment->triangle, point.weight, &surface.material);
-    return surface;
-}
-
-/* What a fragment sends to the eye, not multiplied by alpha, and where it is. */
-typedef struct Lit {
-    double rgb[3], alpha;
-    double z; /* distance along the view axis */
-} Lit;
-
-/* (x, y): y up. All 0 but z where the alpha test discards the fragment. */
-static void light_fragment(const Render *render, const Fragment *fragment, int x, int y, Lit *out)
-{
-    bool transparent = soup_draw(&render->soup, fragment->triangle)->draw->transparent;
-    Surface surface = find_surface(render, fragment, x, y);
-    surface.back_light = render->desc->back_light && transparent;
-    surface.phong = render->desc->shading == SHADING_PHONG;
-    double alpha = transparent ? surface.material.base_color[3] : 1.0;
-    *out = (Lit){.z = -surface.position[2]};
-    if (alpha <= (double)SHADING_ALPHA_TEST)
-        return;
-    out->alpha = alpha;
-    radiance_shade(render->view, &surface, out->rgb);
-}
-
-/* Puts the fragment behind rgba: premultiplied colour so far, and transmittance. */
-static void blend_fragment(const Lit *lit, double rgba[4])
-{
-    for (int i = 0; i < 3; i++)
-        rgba[i] += lit->rgb[i] * lit->alpha * rgba[3];
-    rgba[3] *= 1.0 - lit->alpha;
-}
-
 static void fill_sample(const Soup *soup, const Fragment *fragment, const Lit *lit,
                         const DeepSample *previous, DeepSample *out)
 {
@@ -115,11 +65,11 @@ static uint32_t composite(const Render *render, const TileFragments *tile, int p
     for (uint32_t i = 0; i < count && (samples || rgba[3] > 0.0); i++) {
         const Fragment *fragment = i < transparent ? &tile->sorted[tile->first[pixel] + i] : opaque;
         Lit lit;
-        light_fragment(render, fragment, x, y, &lit);
+        lit_fragment(&render->soup, render->desc, fragment, x, y, &lit);
         if (samples)
             fill_sample(&render->soup, fragment, &lit, i ? &samples[i - 1] : NULL, &samples[i]);
         if (rgba[3] > 0.0)
-            blend_fragment(&lit, rgba);
+            lit_blend(&lit, rgba);
     }
     for (int i = 0; i < 3; i++)
         rgba[i] += rgba[3] * render->view->background[i];

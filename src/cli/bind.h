@@ -26,6 +26,8 @@ int cmd_diagnose(int argc, char **argv);
 int cmd_diff(int argc, char **argv);
 int cmd_driver(int argc, char **argv);
 int cmd_explain(int argc, char **argv);
+int cmd_explain_course(int argc, char **argv);
+int cmd_explain_pixel(int argc, char **argv);
 int cmd_flatten(int argc, char **argv);
 int cmd_hard(int argc, char **argv);
 int cmd_methods(int argc, char **argv);

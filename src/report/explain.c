@@ -6,19 +6,24 @@
 #include "report/html_parts.h"
 #include "report/pictures.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-extern const char report_style_css[], page_css[], page_html[], page_engine_js[], page_draw_js[],
-    page_app_js[], page_number_js[], page_figure_js[], page_sides_js[], page_walk_js[],
-    page_walk_end_js[], page_walk_others_js[], page_methods_js[], page_steps_js[], page_pixel_js[],
-    page_live_js[], page_space_js[], page_lessons_js[], page_course_js[];
+extern const char report_style_css[], page_css[], page_live_css[], page_course_css[], page_html[],
+    page_engine_js[], page_draw_js[], page_app_js[], page_number_js[], page_figure_js[],
+    page_sides_js[], page_walk_js[], page_walk_end_js[], page_walk_others_js[], page_methods_js[],
+    page_steps_js[], page_ray_js[], page_pixel_js[], page_camera_js[], page_edits_js[],
+    page_live_js[], page_controls_js[], page_steer_js[], page_live_panel_js[], page_space_js[],
+    page_lessons_js[], page_course_js[];
 
+static const char *const styles[] = {report_style_css, page_css, page_live_css, page_course_css};
 static const char *const scripts[] = {
-    page_engine_js,      page_draw_js,    page_app_js,     page_number_js,
-    page_figure_js,      page_sides_js,   page_walk_js,    page_walk_end_js,
-    page_walk_others_js, page_methods_js, page_steps_js,   page_pixel_js,
-    page_live_js,        page_space_js,   page_lessons_js, page_course_js};
+    page_engine_js,  page_draw_js,     page_app_js,      page_number_js,      page_figure_js,
+    page_sides_js,   page_walk_js,     page_walk_end_js, page_walk_others_js, page_methods_js,
+    page_steps_js,   page_ray_js,      page_pixel_js,    page_camera_js,      page_edits_js,
+    page_live_js,    page_controls_js, page_steer_js,    page_live_panel_js,  page_space_js,
+    page_lessons_js, page_course_js};
 
 static void put(FileWriter *page, const char *text)
 {
@@ -31,9 +36,15 @@ static void put_page(FileWriter *page, const ExplainDesc *explain, const Text *d
               "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>");
     html_text(page, explain->name);
     put(page, " - explained</title>\n<style>\n");
-    put(page, report_style_css);
-    put(page, page_css);
-    put(page, "</style>\n</head>\n<body>\n");
+    for (size_t i = 0; i < sizeof styles / sizeof styles[0]; i++)
+        put(page, styles[i]);
+    put(page, "</style>\n</head>\n<body");
+    if (explain->lesson) {
+        char lesson[32];
+        snprintf(lesson, sizeof lesson, " data-lesson=\"%d\"", explain->lesson->number);
+        put(page, lesson);
+    }
+    put(page, ">\n");
     put(page, page_html);
     put(page, "<script type=\"application/json\" id=\"data\">");
     file_writer_put(page, data->bytes, data->count);
@@ -48,7 +59,9 @@ static void put_page(FileWriter *page, const ExplainDesc *explain, const Text *d
 
 static size_t page_size(const Text *data)
 {
-    size_t size = data->count + strlen(report_style_css) + strlen(page_css) + strlen(page_html);
+    size_t size = data->count + strlen(page_html);
+    for (size_t i = 0; i < sizeof styles / sizeof styles[0]; i++)
+        size += strlen(styles[i]);
     for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; i++)
         size += strlen(scripts[i]);
     return size;
@@ -68,10 +81,10 @@ static Result check_size(const ExplainDesc *explain, const ExplainRoom *room, si
                        1e-6 * (double)(size - room->scene - room->gl - room->truth));
 }
 
-static Result write(const ExplainDesc *explain, const Text *data, const char *dir)
+static Result write(const ExplainDesc *explain, const Text *data, const char *dir, const char *file)
 {
     FileWriter page;
-    char *path = pictures_path(dir, "index.html");
+    char *path = pictures_path(dir, file);
     Result result = path ? file_writer_open(path, &page) : RESULT_NO_MEMORY;
     free(path);
     if (result != RESULT_OK)
@@ -96,7 +109,8 @@ Result report_explain_check(const char *name, const TraceStore *store)
                        1e-6 * (double)EXPLAIN_MAX_TRACE_BYTES);
 }
 
-Result report_explain_write(const ExplainDesc *explain, const char *dir)
+Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
+                            size_t *bytes)
 {
     Text data = {0};
     ExplainRoom room = {0};
@@ -104,7 +118,9 @@ Result report_explain_write(const ExplainDesc *explain, const char *dir)
     if (result == RESULT_OK)
         result = check_size(explain, &room, page_size(&data));
     if (result == RESULT_OK)
-        result = write(explain, &data, dir);
+        result = write(explain, &data, dir, file);
+    if (bytes)
+        *bytes = page_size(&data);
     text_free(&data);
     return result;
 }

@@ -13,12 +13,20 @@ typedef struct ExplainSide {
     const char *missing;     /* without a frame: why, in one line */
 } ExplainSide;
 
+/* A page that is a lesson: what src/web/lessons.js says stands beside it. */
+typedef struct ExplainLesson {
+    int number;                /* from 1 */
+    const char *const *titles; /* of all lessons */
+    int count;
+} ExplainLesson;
+
 typedef struct ExplainDesc {
     const char *name, *command; /* of the scene; what makes the page again */
     const Scene *scene;
     RenderDesc desc;
     ExplainSide ref, gl, truth;
-    size_t max_bytes; /* of the page; 0: EXPLAIN_MAX_BYTES */
+    size_t max_bytes;            /* of the page; 0: EXPLAIN_MAX_BYTES */
+    const ExplainLesson *lesson; /* NULL: none */
 } ExplainDesc;
 
 #define EXPLAIN_MAX_BYTES       ((size_t)15000000)
@@ -28,8 +36,11 @@ typedef struct ExplainDesc {
  * its own. UNSUPPORTED and a message where it cannot. name: of the scene. */
 Result report_explain_check(const char *name, const TraceStore *ref);
 
-/* Writes dir/index.html; dir exists. ref has a frame and its trace. UNSUPPORTED where the page
- * would be larger than it may be: the message says what takes the room. Else NO_MEMORY and IO. */
-Result report_explain_write(const ExplainDesc *explain, const char *dir);
+/* Writes dir/file; dir exists; ref has a frame and its trace. *bytes, which may be NULL: the page's
+ * size. UNSUPPORTED where the page would be larger than it may be: the message says what takes the
+ * room. Else NO_MEMORY and IO.
+ */
+Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
+                            size_t *bytes);
 
 #endif

@@ -104,9 +104,22 @@ static void put_methods(Text *out)
     }
 }
 
+static void put_lesson(Text *out, const ExplainLesson *lesson)
+{
+    text_print(out, "\"lesson\":{\"number\":%d,\"titles\":[", lesson->number);
+    for (int i = 0; i < lesson->count; i++) {
+        text_print(out, i ? "," : "");
+        put_string(out, lesson->titles[i]);
+    }
+    text_print(out, "]},\n");
+}
+
 static Result put_program(const ExplainDesc *explain, Text *out, ExplainRoom *room)
 {
-    text_print(out, "{\"program\":{\"version\":");
+    text_print(out, "{");
+    if (explain->lesson)
+        put_lesson(out, explain->lesson);
+    text_print(out, "\"program\":{\"version\":");
     put_string(out, explain->ref.frame->version);
     text_print(out, ",\"command\":");
     put_string(out, explain->command);

@@ -12,6 +12,8 @@ typedef struct ExplainRoom {
 
 /* One object, without a '<' in it, so that it can stand in a script element.
  *
+ * lesson, of a lesson's page alone: {number, titles}
+ *
  * program: {version, command, name, size: [2], settings: [[name, value]], values for engine_set;
  * methods: [{name, summary, paper, exact}]}
  *

@@ -288,8 +288,9 @@ static Result check_light(size_t number, const Light *light)
     return RESULT_OK;
 }
 
-static Result check_camera(size_t number, const Camera *camera)
+Result scene_validate_camera(const Scene *scene, size_t number)
 {
+    const Camera *camera = &scene->cameras[number];
     Matrix view;
     if (!camera->name)
         return result_fail(RESULT_BAD_INPUT, "camera %zu: no name", number);
@@ -308,7 +309,7 @@ static Result check_camera(size_t number, const Camera *camera)
     return result;
 }
 
-static Result check_surroundings(const Scene *scene)
+Result scene_validate_surroundings(const Scene *scene)
 {
     for (int i = 0; i < 3; i++)
         if (!(scene->ambient[i] >= 0.0f && scene->ambient[i] <= INTENSITY_LIMIT) ||
@@ -323,7 +324,7 @@ static Result check_surroundings(const Scene *scene)
 
 Result scene_validate(const Scene *scene)
 {
-    Result result = check_surroundings(scene);
+    Result result = scene_validate_surroundings(scene);
     for (size_t i = 0; !result && i < scene->mesh_count; i++)
         result = check_mesh(i, &scene->meshes[i]);
     for (size_t i = 0; !result && i < scene->texture_count; i++)
@@ -335,7 +336,7 @@ Result scene_validate(const Scene *scene)
     for (size_t i = 0; !result && i < scene->light_count; i++)
         result = check_light(i, &scene->lights[i]);
     for (size_t i = 0; !result && i < scene->camera_count; i++)
-        result = check_camera(i, &scene->cameras[i]);
+        result = scene_validate_camera(scene, i);
     return result;
 }
 

@@ -107,6 +107,9 @@ uint64_t scene_triangle_count(const Scene *scene); /* over all instances */
  * precision cannot overflow), and there are fewer than 2^32 − 1 triangles over all instances.
  * Zero-area triangles and singular instance matrices are legal. NO_MEMORY is possible. */
 Result scene_validate(const Scene *scene);
+/* Of these, the rules of one camera; of ambient, background, rotation and name. */
+Result scene_validate_camera(const Scene *scene, size_t camera);
+Result scene_validate_surroundings(const Scene *scene);
 
 /* World-space bounding box of all instances. False when there is no vertex. */
 bool scene_bounds(const Scene *scene, double low[3], double high[3]);

@@ -14,6 +14,8 @@ const app = {
     view: "steps", /* "steps", "live" or "space" */
     makeSteps: () => [],
     listeners: {},
+    linkTimer: null,
+    linkTime: 0, /* when it was written last */
     links: [], /* further parts of the address: see permalink */
     stale: false,
     refreshing: null,
@@ -109,7 +111,7 @@ app.say = (text) => {
 
 /* ---- listeners ---- */
 
-/* what: "frame", "step", "pixel", "view" or "scene". */
+/* what: "frame", "step", "pixel", "view", "scene", "settings" or "edit": of the scene. */
 app.on = (what, listener) => {
     (app.listeners[what] ??= []).push(listener);
 };
@@ -128,8 +130,10 @@ app.change = async ({ step, pixel, view, ...settings }) => {
     const told = [];
     app.say("");
     try {
-        if (Object.keys(settings).length > 0)
+        if (Object.keys(settings).length > 0) {
             await app.set(settings);
+            told.push("settings");
+        }
         if (view !== undefined && VIEWS.includes(view) && view !== app.view) {
             app.view = view;
             told.push("view");
@@ -269,8 +273,13 @@ app.link = () => {
         `${name}=${encodeURIComponent(value).replace(/%2C/g, ",")}`).join("&");
 };
 
+/* At most five times a second: browsers refuse more. */
 app.writeLink = () => {
-    history.replaceState(null, "", app.link());
+    app.linkTimer ??= setTimeout(() => {
+        app.linkTimer = null;
+        app.linkTime = performance.now();
+        history.replaceState(null, "", app.link());
+    }, app.linkTime + 200 - performance.now());
 };
 
 /* Goes where the address says. What it does not name is as carried. */

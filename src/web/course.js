@@ -1,2 +1,146 @@
-/* To come. */
+/* A lesson: its text and its question beside the explorer. What it says is in lessons.js; whether
+ * the page is a lesson, body's data-lesson. */
 "use strict";
+
+const course = { number: Number(document.body.dataset.lesson ?? 0), section: null, verdict: null,
+                 timer: null, asked: 0 };
+
+const COURSE_WAIT_MS = 250; /* after the last change */
+
+/* ---- texts ---- */
+
+/* Of "plain, *a term at its definition*, [words](step=…&pixel=x,y)": text, terms, and links that
+ * lead there without taking back what the reader changed. */
+course.words = (text) => text.split(/(\*[^*]+\*|\[[^\]]+\]\([^)]*\))/).map((part) => {
+    const link = part.match(/^\[([^\]]+)\]\(([^)]*)\)$/);
+    if (link)
+        return course.guide(link[1], new URLSearchParams(link[2]));
+    return /^\*.*\*$/.test(part) ? app.element("dfn", { textContent: part.slice(1, -1) }) : part;
+});
+
+course.guide = (text, parts) => {
+    const link = app.element("a", { href: `#${parts}`, textContent: text });
+    link.addEventListener("click", async (event) => {
+        event.preventDefault();
+        const wanted = Object.fromEntries(parts);
+        const focus = wanted.focus;
+        delete wanted.focus;
+        if (wanted.pixel)
+            wanted.pixel = wanted.pixel.split(",").map(Number);
+        await app.change({ view: "steps", ...wanted });
+        if (focus)
+            course.focus(focus);
+        else
+            document.getElementById(`view-${app.view}`).scrollIntoView({ block: "start" });
+    });
+    return link;
+};
+
+/* A control, wherever it is folded away. */
+course.focus = (id) => {
+    const control = document.getElementById(id);
+    for (let box = control?.closest("details"); box; box = box.parentElement.closest("details"))
+        box.open = true;
+    control?.focus();
+    control?.scrollIntoView({ block: "center" });
+};
+
+/* ---- the lesson ---- */
+
+course.make = () => {
+    const lesson = LESSONS[course.number - 1];
+    course.section = app.element("section", { id: "lesson" });
+    course.section.setAttribute("aria-label", "The lesson");
+    document.body.prepend(course.section);
+    if (!location.hash)
+        history.replaceState(null, "", `#${lesson.start}`);
+    app.on("scene", () => {
+        if (!course.verdict)
+            course.fill(lesson, app.data.lesson.titles);
+    });
+    for (const what of ["frame", "pixel", "settings", "edit", "view"])
+        app.on(what, course.later);
+};
+
+course.fill = (lesson, titles) => {
+    const { number, section } = course;
+    course.verdict = app.element("p", { id: "lesson-verdict" });
+    course.verdict.setAttribute("role", "status");
+    section.append(
+        app.element("p", { className: "kicker", textContent:
+            `Lesson ${number} of ${titles.length}` }),
+        app.element("h2", { textContent: titles[number - 1] }),
+        ...lesson.text.map((text) => app.element("p", {}, ...course.words(text))),
+        app.element("div", { className: "question" }, app.element("h3", { textContent: "Try it" }),
+            ...lesson.question.map((text) => app.element("p", {}, ...course.words(text))),
+            course.verdict),
+        app.element("p", { className: "note", textContent: `Source: ${lesson.source}` }),
+        course.others(number, titles));
+};
+
+course.others = (number, titles) => {
+    const link = (to, text) => app.element("a", { href: to, textContent: text });
+    const nav = app.element("nav", { className: "lessons" });
+    nav.setAttribute("aria-label", "Lessons");
+    if (number > 1)
+        nav.append(link(`lesson-${number - 1}.html`, `\u2190 ${titles[number - 2]}`));
+    nav.append(link("index.html", "All lessons"));
+    if (number < titles.length)
+        nav.append(link(`lesson-${number + 1}.html`, `${titles[number]} \u2192`));
+    return nav;
+};
+
+/* ---- the question ---- */
+
+course.later = () => {
+    clearTimeout(course.timer);
+    course.timer = setTimeout(course.check, COURSE_WAIT_MS);
+};
+
+/* The traced frame of things as they stand; the live view leaves app.frame behind. */
+course.frame = async () => {
+    if (!app.stale)
+        return app.frame;
+    const frame = await app.engine.render(...app.settings.size, true);
+    const buffers = new Map(frame.buffers.map((buffer) => [buffer.name, buffer]));
+    frame.buffer = (name) => buffers.get(name);
+    return frame;
+};
+
+/* What a frame stored at a pixel. */
+course.at = (frame, name, [x, y], channel = 0) => {
+    const buffer = frame.buffer(name);
+    return buffer && app.stored(buffer.data[(y * buffer.width + x) * buffer.channels + channel],
+                                buffer.format);
+};
+
+/* How many layers peels took at a pixel. */
+course.layers = (frame, [x, y]) => {
+    let count = 0;
+    for (let k = 0; k < frame.peels; k++)
+        count += course.at(frame, `peel.${k}.primitive`, [x, y]) !== 0xffffffff;
+    return count;
+};
+
+course.check = async () => {
+    if (!course.verdict)
+        return;
+    const asked = ++course.asked;
+    try {
+        const { right, text } = await LESSONS[course.number - 1].check();
+        if (asked !== course.asked)
+            return;
+        course.verdict.className = right ? "right" : "not-yet";
+        course.verdict.replaceChildren(
+            app.element("strong", { textContent: right ? "\u2713 Right. " : "Not yet. " }),
+            ...[text].flat());
+    } catch (error) {
+        app.say(error.message);
+    }
+};
+
+/* A number in a verdict. */
+course.value = (value, what, format = "r32f") => app.numberElement(value, format, what);
+
+if (course.number > 0)
+    course.make();

@@ -5,6 +5,7 @@
 #include "frame/method.h"
 #include "frame/setting.h"
 #include "ref/pipeline/pipeline.h"
+#include "ref/pipeline/retrace.h"
 #include "scene/blob.h"
 
 #include <math.h>
@@ -30,7 +31,7 @@ typedef struct Engine {
     Frame frame;
     Traced *traced;
     size_t traced_count, traced_room;
-    Text scene_text, settings_text, frame_text;
+    Text scene_text, settings_text, frame_text, history_text;
 } Engine;
 
 static Engine engine;
@@ -109,6 +110,16 @@ static void print_camera(Text *text, const Camera *camera)
         text_print(text, "null}");
 }
 
+static void print_bounds(Text *text, const Scene *scene)
+{
+    double bounds[2][3] = {{0.0}, {0.0}};
+    scene_bounds(scene, bounds[0], bounds[1]);
+    for (int i = 0; i < 2; i++)
+        text_print(text, "%s[%.17g,%.17g,%.17g]", i ? "," : ",\"bounds\":[", bounds[i][0],
+                   bounds[i][1], bounds[i][2]);
+    text_print(text, "]");
+}
+
 EXPORT(engine_scene) const char *engine_scene(void)
 {
     Text *text = begin(&engine.scene_text);
@@ -120,6 +131,7 @@ EXPORT(engine_scene) const char *engine_scene(void)
     print_numbers(text, "ambient", scene->ambient, 3);
     text_print(text, ",");
     print_numbers(text, "background", scene->background, 3);
+    print_bounds(text, scene);
     text_print(text, ",\"light_degrees_per_second\":%.17g,\"materials\":[",
                scene->light_degrees_per_second);
     for (size_t i = 0; i < scene->material_count; i++) {
@@ -142,21 +154,21 @@ EXPORT(engine_scene) const char *engine_scene(void)
     return finish(text);
 }
 
-static Result validated(void)
-{
-    return scene_validate(&engine.scene);
-}
-
 EXPORT(engine_set_material) int engine_set_material(int index, int field, double value)
 {
     Scene *scene = &engine.scene;
-    if (index < 0 || (size_t)index >= scene->material_count || field < 0 || field > 6 ||
+    if (index < 0 || (size_t)index >= scene->material_count || field < 0 || field > 7 ||
         !(value >= 0.0 && value <= 1.0))
         return result_fail(RESULT_BAD_INPUT,
                            "material %d, field %d: expected one of the scene's, "
-                           "0 to 6, and a value from 0 to 1",
+                           "0 to 7, and a value from 0 to 1",
                            index, field);
     Material *material = &scene->materials[index];
+    if (field == 7) {
+        if (material->alpha_mode != ALPHA_MASK)
+            material->alpha_mode = value != 0.0 ? ALPHA_BLEND : ALPHA_OPAQUE;
+        return RESULT_OK;
+    }
     float *fields[] = {&material->roughness, &material->metallic, &material->occlusion};
     *(field < 4 ? &material->base_color[field] : fields[field - 4]) = (float)value;
     if (field == 3 && material->alpha_mode != ALPHA_MASK)
@@ -166,19 +178,32 @@ EXPORT(engine_set_material) int engine_set_material(int index, int field, double
 
 EXPORT(engine_set_ambient) int engine_set_ambient(double red, double green, double blue)
 {
+    Scene *scene = &engine.scene;
     const double values[] = {red, green, blue};
+    float before[3];
+    memcpy(before, scene->ambient, sizeof before);
     for (int i = 0; i < 3; i++)
-        engine.scene.ambient[i] = (float)values[i];
-    return validated();
+        scene->ambient[i] = (float)values[i];
+    Result result = scene_validate_surroundings(scene);
+    if (result != RESULT_OK)
+        memcpy(scene->ambient, before, sizeof before);
+    return result;
 }
 
-EXPORT(engine_set_camera) int engine_set_camera(const double world[16], double yfov)
+EXPORT(engine_set_camera)
+int engine_set_camera(int index, const double world[16], double yfov, double near, double far)
 {
-    Camera *camera = &engine.scene.cameras[engine.desc.camera];
+    Scene *scene = &engine.scene;
+    if (index < 0 || (size_t)index >= scene->camera_count)
+        return result_fail(RESULT_BAD_INPUT, "camera %d: expected one of the scene's %zu", index,
+                           scene->camera_count);
+    Camera *camera = &scene->cameras[index];
     Camera before = *camera;
     memcpy(camera->world.m, world, sizeof camera->world.m);
     camera->yfov = yfov;
-    Result result = validated();
+    camera->near = near;
+    camera->far = far;
+    Result result = scene_validate_camera(scene, (size_t)index);
     if (result != RESULT_OK)
         *camera = before;
     return result;
@@ -333,4 +358,19 @@ EXPORT(engine_frame) const char *engine_frame(void)
     }
     text_print(text, "]}");
     return finish(text);
+}
+
+EXPORT(engine_history) const char *engine_history(int x, int y)
+{
+    Text *text = begin(&engine.history_text);
+    Retrace *retrace;
+    History history = {0};
+    Result result = retrace_open(&engine.scene, &engine.desc, &retrace);
+    if (result == RESULT_OK)
+        result = retrace_pixel(retrace, x, y, &history);
+    if (result == RESULT_OK)
+        history_json(&history, &engine.scene, text);
+    history_free(&history);
+    retrace_close(retrace);
+    return result == RESULT_OK ? finish(text) : NULL;
 }

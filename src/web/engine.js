@@ -31,10 +31,11 @@ class Engine {
         this.check(this.exports.engine_set_material(material, field, value));
     }
     setAmbient(red, green, blue) { this.check(this.exports.engine_set_ambient(red, green, blue)); }
-    /* world: 16 numbers, column-major. */
-    setCamera(world, yfov) {
+    /* world: 16 numbers, column-major; far: Infinity for none. */
+    setCamera(camera, world, yfov, near, far) {
         const bytes = new Uint8Array(new Float64Array(world).buffer);
-        this.withBytes(bytes, (at) => this.check(this.exports.engine_set_camera(at, yfov)));
+        this.withBytes(bytes, (at) =>
+            this.check(this.exports.engine_set_camera(camera, at, yfov, near, far)));
     }
     /* The frame of engine_frame; each buffer has `data` of its own: Float32Array, Uint32Array,
      * Uint16Array (halves are bits) or Uint8Array, all channels of a pixel together, top row first. */
@@ -49,6 +50,14 @@ class Engine {
             delete buffer.at;
         }
         return frame;
+    }
+
+    /* What pixel (x, y), from the top left, went through: frame/history.h's JSON as an object. */
+    history(x, y) {
+        const at = this.exports.engine_history(x, y);
+        if (at === 0)
+            throw new Error(this.string(this.exports.engine_message()));
+        return this.json(at);
     }
 
     /* ---- memory ---- */

@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "base/random.h"
 #include "base/result.h"
+#include "base/text.h"
 
 #include <fcntl.h>
 #include <pthread.h>
@@ -33,6 +34,26 @@ START_TEST(test_message)
     ck_assert_uint_lt(strlen(result_message()), sizeof huge - 1);
     for (int i = RESULT_OK; i <= RESULT_INTERNAL + 1; i++)
         ck_assert_uint_gt(strlen(result_text((Result)i)), 0);
+}
+END_TEST
+
+/* ---- text --------------------------------------------------------------------------------------
+ */
+
+START_TEST(test_text)
+{
+    Text text = {0};
+    for (int i = 0; i < 100; i++)
+        text_print(&text, "%d,", i % 10);
+    ck_assert_uint_eq(text.count, 200);
+    ck_assert_uint_eq(strlen(text.bytes), 200);
+    text_free(&text);
+    text_json_string(&text, "a\"b\\c\n\xc3\xa9\xff\xf0\x9f\x98\x80\xe0\x80\x80\xed\xa0\x80");
+    ck_assert_str_eq(text.bytes, "\"a\\\"b\\\\c\\u000a\xc3\xa9?\xf0\x9f\x98\x80??????\"");
+    text_free(&text);
+    text_json_string(&text, "");
+    ck_assert_str_eq(text.bytes, "\"\"");
+    text_free(&text);
 }
 END_TEST
 
@@ -286,6 +307,7 @@ int main(void)
     TCase *tcase = tcase_create("base");
     tcase_set_timeout(tcase, 300);
     tcase_add_test(tcase, test_message);
+    tcase_add_test(tcase, test_text);
     tcase_add_test(tcase, test_message_per_thread);
     tcase_add_test(tcase, test_stderr);
     tcase_add_test(tcase, test_memory_array);

@@ -96,8 +96,8 @@ static void clear_targets(Stage *stage)
 
 /* ---- lighting ---- */
 
-static bool light_pixel(Stage *stage, const Image targets[TARGETS], float distance, int x, int y,
-                        float color[4])
+static bool light_pixel(Stage *stage, const Image targets[TARGETS], float distance,
+                        uint32_t primitive, int x, int y, float color[4])
 {
     const Pass *pass = stage->pass;
     ShadeForm form = pass_shade_form(pass, true);
@@ -113,7 +113,7 @@ static bool light_pixel(Stage *stage, const Image targets[TARGETS], float distan
         texel.material[i] = fetched[TARGET_MATERIAL][i];
     }
     texel.diffuse[3] = fetched[TARGET_NORMAL][2];
-    if (!shade_pixel(&pass->view, &form, &texel, color))
+    if (!stage_shade(stage, pixel, primitive, &form, &texel, color))
         return false;
     minmax_count_shaded(stage, x, y);
     return true;
@@ -127,12 +127,15 @@ static void light_tile(Stage *stage, uint32_t tile)
         for (int x = rect.x0; x <= rect.x1; x++) {
             size_t pixel = stage_pixel(stage->pass, x, y);
             const float *limits = minmax_pixel(&dual->minmax.previous, pixel);
-            const Image *back = &dual->minmax.back;
+            uint32_t front = *(uint32_t *)minmax_pixel(&dual->minmax.front_id, pixel);
+            uint32_t back = *(uint32_t *)minmax_pixel(&dual->minmax.back_id, pixel);
             float color[4];
-            if (light_pixel(stage, dual->front, op_neg(limits[0]), x, y, color))
-                blend_under(stage->accum.format, color, minmax_pixel(&stage->accum, pixel));
-            if (light_pixel(stage, dual->back, limits[1], x, y, color))
-                blend_over(back->format, color, minmax_pixel(back, pixel));
+            if (light_pixel(stage, dual->front, op_neg(limits[0]), front, x, y, color))
+                stage_blend(stage, blend_under, "under", "accum", front, color, &stage->accum,
+                            pixel);
+            if (light_pixel(stage, dual->back, limits[1], back, x, y, color))
+                stage_blend(stage, blend_over, "over", "back", back, color, &dual->minmax.back,
+                            pixel);
         }
 }
 

@@ -43,7 +43,8 @@ static bool shade(const StageVisit *visit, const Setup *setup, int x, int y, flo
     ShadeForm form = pass_shade_form(pass, true);
     Texel texel;
     fragment_surface(pass, setup, visit->primitive, x, y, &texel);
-    if (!shade_pixel(&pass->view, &form, &texel, source))
+    if (!stage_shade(visit->stage, stage_pixel(pass, x, y), visit->primitive->id, &form, &texel,
+                     source))
         return false;
     if (format_info(pass->desc->accum)->kind == KIND_UNORM)
         for (int i = 0; i < 4; i++)
@@ -100,7 +101,9 @@ static void blend_tile(Stage *stage, uint32_t tile)
             size_t pixel = stage_pixel(stage->pass, x, y);
             float source[4];
             format_fetch(format, minmax_pixel(&dual->back, pixel), source);
-            blend_over(format, source, minmax_pixel(&dual->minmax.back, pixel));
+            stage_blend(stage, blend_over, "over", "back",
+                        *(uint32_t *)minmax_pixel(&dual->minmax.back_id, pixel), source,
+                        &dual->minmax.back, pixel);
         }
 }
 
@@ -132,7 +135,8 @@ static void compose_tile(Stage *stage, uint32_t tile)
             size_t pixel = stage_pixel(stage->pass, x, y);
             float front[4];
             format_fetch(dual->front.format, minmax_pixel(&dual->front, pixel), front);
-            blend_under(stage->accum.format, front, minmax_pixel(&stage->accum, pixel));
+            stage_blend(stage, blend_under, "under", "accum", PRIMITIVE_NONE, front, &stage->accum,
+                        pixel);
         }
 }
 

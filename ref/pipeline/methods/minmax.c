@@ -11,16 +11,6 @@
 
 /* ---- fragments ---- */
 
-static MinMaxSide side_of(const float limits[2], float distance)
-{
-    float nearest = op_neg(limits[0]), farthest = limits[1];
-    if (distance == nearest)
-        return MINMAX_FRONT;
-    if (distance == farthest)
-        return MINMAX_BACK;
-    return distance > nearest && distance < farthest ? MINMAX_BETWEEN : MINMAX_PEELED;
-}
-
 static bool is_visible(const StageVisit *visit, const Setup *setup, int x, int y,
                        MinMaxFragment *out)
 {
@@ -52,7 +42,7 @@ bool minmax_visible(const StageVisit *visit, const Setup *setup, int x, int y, M
     MinMax *minmax = minmax_of(visit->stage);
     if (!is_visible(visit, setup, x, y, out))
         return false;
-    out->side = side_of(minmax_pixel(&minmax->previous, out->pixel), out->distance);
+    out->side = minmax_side(minmax_pixel(&minmax->previous, out->pixel), out->distance);
     if (out->side == MINMAX_BETWEEN)
         widen(minmax, out);
     else if (out->side != MINMAX_PEELED)
@@ -85,7 +75,7 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
     Stage *stage = visit->stage;
     MinMaxFragment fragment;
     if (is_visible(visit, setup, x, y, &fragment) &&
-        side_of(minmax_pixel(&minmax_of(stage)->current, fragment.pixel), fragment.distance) !=
+        minmax_side(minmax_pixel(&minmax_of(stage)->current, fragment.pixel), fragment.distance) !=
             MINMAX_PEELED)
         stage->remaining[fragment.pixel]++;
 }
@@ -247,7 +237,8 @@ static void compose_tile(Stage *stage, uint32_t tile)
             float source[4];
             format_fetch(back->format, minmax_pixel(back, pixel), source);
             source[3] = op_sub(1.0f, source[3]);
-            blend_under(stage->accum.format, source, minmax_pixel(&stage->accum, pixel));
+            stage_blend(stage, blend_under, "under", "accum", PRIMITIVE_NONE, source, &stage->accum,
+                        pixel);
         }
 }
 

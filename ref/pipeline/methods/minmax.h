@@ -87,6 +87,17 @@ static inline void *minmax_pixel(const Image *image, size_t pixel)
     return (char *)image->pixels + pixel * format_pixel_bytes(image->format);
 }
 
+/* Where a distance lies to the limits of the pass before. */
+static inline MinMaxSide minmax_side(const float limits[2], float distance)
+{
+    float nearest = op_neg(limits[0]), farthest = limits[1];
+    if (distance == nearest)
+        return MINMAX_FRONT;
+    if (distance == farthest)
+        return MINMAX_BACK;
+    return distance > nearest && distance < farthest ? MINMAX_BETWEEN : MINMAX_PEELED;
+}
+
 static inline void minmax_count_shaded(Stage *stage, int x, int y)
 {
     uint32_t tile = pass_tile_at(stage->pass, x, y);

@@ -69,11 +69,10 @@ static int nearer(const void *left, const void *right, void *context)
 static void visit_fragment(void *context, const Setup *setup, int x, int y)
 {
     const Stage *stage = ((const ShadedVisit *)context)->draw.stage;
-    size_t bytes = format_pixel_bytes(stage->accum.format);
     ShadedFragment fragment;
     if (shaded_fragment(context, setup, x, y, &fragment))
-        blend_over(stage->accum.format, fragment.source,
-                   (char *)stage->accum.pixels + fragment.pixel * bytes);
+        stage_blend(stage, blend_over, "over", "accum", fragment.primitive, fragment.source,
+                    &stage->accum, fragment.pixel);
 }
 
 static void geometry_tile(Stage *stage, uint32_t tile)

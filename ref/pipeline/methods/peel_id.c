@@ -27,24 +27,6 @@ typedef struct PeelId {
     Image previous_depth, previous_id; /* the others of the two pairs that take turns */
 } PeelId;
 
-/* ---- order ---- */
-
-static inline bool id_before(const Pass *pass, uint32_t a, uint32_t b)
-{
-    return pass->desc->depth_func == DEPTH_LEQUAL ? a > b : a < b;
-}
-
-/* Whether the fragment comes after the previous layer. */
-static inline bool comes_after(const Pass *pass, uint32_t key, uint32_t id, uint32_t previous,
-                               uint32_t previous_id)
-{
-    if (previous_id == PRIMITIVE_NONE)
-        return false; /* it was empty */
-    if (key == previous)
-        return id_before(pass, previous_id, id);
-    return pass_behind(pass, key, previous);
-}
-
 static inline uint32_t previous_id(const PeelId *state, size_t pixel)
 {
     return ((const uint32_t *)state->previous_id.pixels)[pixel];
@@ -59,7 +41,7 @@ static inline void keep(const StageVisit *visit, size_t pixel, uint32_t key)
     uint32_t *depth = (uint32_t *)visit->target->depth.pixels + pixel;
     uint32_t *id = (uint32_t *)visit->target->primitive.pixels + pixel;
     if (*id != PRIMITIVE_NONE) {
-        bool first = key == *depth ? !id_before(pass, *id, visit->primitive->id)
+        bool first = key == *depth ? !pass_id_before(pass, *id, visit->primitive->id)
                                    : pass_depth_test(pass, key, *depth);
         if (!first)
             return;
@@ -81,8 +63,8 @@ static void visit_fragment(void *context, const Setup *setup, int x, int y)
         return;
     if (state->peel == 0)
         stage->fragments[pixel]++;
-    else if (!comes_after(pass, depth.key, visit->primitive->id,
-                          stage_key(&state->previous_depth, pixel), previous_id(state, pixel)))
+    else if (!pass_comes_after(pass, depth.key, visit->primitive->id,
+                               stage_key(&state->previous_depth, pixel), previous_id(state, pixel)))
         return;
     keep(visit, pixel, depth.key);
 }
@@ -107,8 +89,8 @@ static void visit_remaining(void *context, const Setup *setup, int x, int y)
     size_t pixel = stage_pixel(pass, x, y);
     FragmentDepth depth = pass_fragment_depth(pass, setup, x, y);
     if (!pass_hidden(pass, depth, stage_key(&stage->opaque.depth, pixel)) &&
-        comes_after(pass, depth.key, visit->primitive->id, stage_key(&state->previous_depth, pixel),
-                    previous_id(state, pixel)))
+        pass_comes_after(pass, depth.key, visit->primitive->id,
+                         stage_key(&state->previous_depth, pixel), previous_id(state, pixel)))
         stage->remaining[pixel]++;
 }
 
@@ -138,8 +120,8 @@ static bool is_peeled(const Stage *stage, const Primitive *primitive, FragmentDe
 {
     const PeelId *state = stage->method;
     return state->peel > 0 &&
-           !comes_after(stage->pass, depth.key, primitive->id,
-                        stage_key(&state->previous_depth, pixel), previous_id(state, pixel));
+           !pass_comes_after(stage->pass, depth.key, primitive->id,
+                             stage_key(&state->previous_depth, pixel), previous_id(state, pixel));
 }
 
 /* Traces and blends the layer that was drawn. */

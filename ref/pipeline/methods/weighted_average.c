@@ -43,6 +43,7 @@ Result weighted_average_render(Pass *pass, TraceSink *trace, Frame *frame)
     static const SumsMethod method = {.name = "weighted-average",
                                       .second = "count",
                                       .blend = blend_add,
+                                      .equation = "add",
                                       .write = write,
                                       .combine = combine};
     return sums_render(pass, trace, frame, &method);

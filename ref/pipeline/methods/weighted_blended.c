@@ -74,6 +74,7 @@ Result weighted_blended_render(Pass *pass, TraceSink *trace, Frame *frame)
                                       .second = "product",
                                       .start = 1.0f,
                                       .blend = blend_product,
+                                      .equation = "product",
                                       .write = write,
                                       .combine = combine};
     return sums_render(pass, trace, frame, &method);
