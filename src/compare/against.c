@@ -99,7 +99,7 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
 
 Result against_create(const TraceStore *reference, Against *out)
 {
-    *out = (Against){.sink = {put}, .reference = reference};
+    *out = (Against){.sink = {.put = put}, .reference = reference};
     out->seen = memory_array((size_t)store_count(reference), sizeof *out->seen);
     return out->seen ? RESULT_OK : RESULT_NO_MEMORY;
 }
