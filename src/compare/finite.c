@@ -43,5 +43,5 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
 
 Finite finite_before(TraceSink *next)
 {
-    return (Finite){.sink = {put}, .next = next};
+    return (Finite){.sink = {.put = put}, .next = next};
 }
