@@ -111,15 +111,19 @@ function front(expected, name, side, pixel) {
     return side === "nearest" ? -stored : stored;
 }
 
+/* null where the history has no such fragment, step or light: the page may still show another
+ * pixel's. */
 function ofHistory({ fragments, blend }, path) {
     const [kind, index, ...rest] = path;
-    const of = (value) => rest.length === 0 || value === undefined ? value : undefined;
+    if (kind === "blend" ? !blend[index]
+        : !fragments[index] || (rest[0] === "light" && !fragments[index].shading?.lights[rest[1]]))
+        return null;
     const list = (values, letter) => values["rgba".indexOf(letter)];
     if (kind === "blend")
         return list(blend[index][rest[0]], rest[1]);
     const fragment = fragments[index], [key, ...more] = rest;
     if (key === "primitive" || key === "depth" || key === "distance")
-        return of(fragment[key]) ?? fragment[key];
+        return fragment[key];
     if (key === "alpha")
         return fragment.surface.base[3];
     if (key === "edge")
@@ -175,7 +179,8 @@ Expected.KINDS = [
         const [, letter] = what.match(/^difference\.([rgba])$/) ?? [];
         const at = 4 * (y * e.size[0] + x) + e.channel(letter);
         const of = (frame) => frame.buffers.get("display").data[at];
-        return letter && of(e.method("painter")) - of(e.ref);
+        const other = e.methods[e.settings.method] === "painter" ? "peel" : "painter";
+        return letter && of(e.method(other)) - of(e.ref);
     },
     (e, what, pixel) => {
         const [, letter] = what.match(/^(?:truth\.final|side\.truth)\.([rgba])$/) ?? [];

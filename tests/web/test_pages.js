@@ -96,7 +96,7 @@ function pixels(expected) {
     for (let i = 0; i < width * height; i++)
         counts.push(names.filter((name) => expected.ref.buffers.get(name).data[i] !== 0xffffffff).length);
     const most = Math.max(...counts), at = (i) => [i % width, Math.floor(i / width)];
-    return [at(counts.indexOf(most)), at(counts.lastIndexOf(Math.min(1, most))), [0, 0]];
+    return [at(counts.indexOf(most)), at(counts.findLastIndex((count) => count > 0)), [0, 0]];
 }
 
 async function setSlider(page, id, value) {
@@ -149,6 +149,14 @@ async function edit(page, state, folder) {
                           edits: { [`material.${index}.alpha`]: 0.3125 }, truth: false });
 }
 
+/* All that is folded of a pixel's fragments: edges, surfaces, each light's terms. */
+async function unfold(page, expected, pixel) {
+    await page.evaluate(() => document.querySelectorAll("#pixel .fold").forEach((one) => one.click()));
+    const total = await compare(page, expected, pixel, `${expected.scene}: unfolded`);
+    await page.evaluate(() => document.querySelectorAll("#pixel .fold").forEach((one) => one.click()));
+    return total;
+}
+
 async function testScene(browser, scene) {
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), "peel-pages-"));
     const args = makePage(scene, folder);
@@ -158,6 +166,7 @@ async function testScene(browser, scene) {
     const [first, second, third] = pixels(expected);
     await choosePixel(page, first);
     let total = await walk(page, expected, first, "ArrowRight");
+    total += await unfold(page, expected, first);
     await choosePixel(page, second);
     total += await walk(page, expected, second, "ArrowLeft");
     const edited = await edit(page, expected, folder);
