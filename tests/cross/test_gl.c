@@ -196,7 +196,7 @@ static Result note_name(TraceSink *sink, const TraceBuffer *buffer)
 START_TEST(test_trace_is_complete_and_in_order)
 {
     Scene scene = quad_scene(layered, 2);
-    NameSink notes = {.sink = {note_name}, .fail_after = -1};
+    NameSink notes = {.sink = {.put = note_name}, .fail_after = -1};
     Frame frame;
     ck_assert(gl_render(&scene, &small, &notes.sink, &frame) == RESULT_OK);
     ck_assert_str_eq(notes.names,
@@ -206,7 +206,7 @@ START_TEST(test_trace_is_complete_and_in_order)
     ck_assert(notes.top_is_first);
     frame_free(&frame);
 
-    notes = (NameSink){.sink = {note_name}, .fail_after = 7};
+    notes = (NameSink){.sink = {.put = note_name}, .fail_after = 7};
     ck_assert(gl_render(&scene, &small, &notes.sink, &frame) == RESULT_IO);
     ck_assert_str_eq(result_message(), "the sink is full");
     ck_assert_ptr_null(frame.final.pixels);
