@@ -1,6 +1,6 @@
-/* Cameras that are turned and moved by hand: {eye, axes: [right, up, back], lengths, distance, yfov,
- * near, far}. axes: unit vectors; lengths: what the camera's matrix scales them by; distance: from
- * the eye, along the view, to what it turns about. Functions give new cameras. */
+/* Cameras that are turned and moved by hand: {eye, axes: [right, up, back], lengths, distance,
+ * yfov, near, far}. axes: unit vectors; lengths: what the camera's matrix scales them by; distance:
+ * from the eye, along the view, to what it turns about. Functions give new cameras. */
 "use strict";
 
 const camera = {};
@@ -80,15 +80,15 @@ camera.zoom = (one, factor) => {
     return { ...one, distance, eye: camera.add(camera.target(one), one.axes[2], distance) };
 };
 
-/* By amounts of the scene's units to the right, up and forwards; what it turns about comes along. */
+/* By amounts of the scene's units to the right, up and forwards; its target comes along. */
 camera.move = (one, right, up, forward) => {
     let eye = camera.add(one.eye, one.axes[0], right);
     eye = camera.add(camera.add(eye, one.axes[1], up), one.axes[2], -forward);
     return { ...one, eye };
 };
 
-/* What the address says of it, and back; null where a text is not one. Twelve numbers of the matrix,
- * field of view, near, far, distance. */
+/* What the address says of it, and back; null where a text is not one. Twelve numbers of the
+ * matrix, field of view, near, far, distance. */
 camera.write = (one) => [...camera.world(one).filter((v, i) => i % 4 !== 3), one.yfov, one.near,
                          one.far, one.distance].map((v) => String(camera.round(v))).join(",");
 

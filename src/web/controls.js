@@ -8,9 +8,10 @@ const controls = { all: [] };
  * whether the button is seen, reset(), update()}. */
 controls.row = ({ id, label, of = "", hint = "", changed, reset, update }, ...parts) => {
     const text = app.element("label", { textContent: label, htmlFor: id, title: hint });
+    const title = `Reset ${label.toLowerCase()}${of && ` of ${of}`}`;
     const back = app.element("button", { type: "button", className: "reset", textContent: "↺",
-                                         title: `Reset ${label.toLowerCase()}${of && ` of ${of}`}` });
-    back.setAttribute("aria-label", back.title);
+                                         title });
+    back.setAttribute("aria-label", title);
     back.addEventListener("click", () => {
         reset();
         document.getElementById(id).focus(); /* the button goes away */
@@ -34,8 +35,9 @@ controls.slider = (desc) => {
     const { id, label, of, min, max, step, get, own, set, what, show } = desc;
     const slider = app.element("input", { type: "range", id, min, step });
     const most = () => (typeof max === "function" ? max() : max);
-    const number = show ? app.element("output", { className: "number" })
-                        : app.element("input", { type: "number", step: "any", min, className: "number" });
+    const number = show ? app.element("output", {})
+                        : app.element("input", { type: "number", step: "any", min });
+    number.className = "number";
     number.setAttribute("aria-label", `${label}${of ? ` of ${of}` : ""}, as a number`);
     number.dataset.what = what;
     const use = (text) => {

@@ -27,7 +27,8 @@ edits.code = (linear) => {
 
 edits.hexColor = (rgb) =>
     "#" + rgb.slice(0, 3).map((v) => edits.code(v).toString(16).padStart(2, "0")).join("");
-edits.parseColor = (text) => [1, 3, 5].map((at) => edits.linear(parseInt(text.slice(at, at + 2), 16)));
+edits.parseColor = (text) =>
+    [1, 3, 5].map((at) => edits.linear(parseInt(text.slice(at, at + 2), 16)));
 
 /* ---- as they stand ---- */
 

@@ -59,9 +59,10 @@ live.button = (text, use) => {
 
 live.buildPicture = (section) => {
     const help = app.element("p", { id: "live-help", className: "note", textContent:
-        "Drag turns, with Shift it moves; two fingers move and pinch. Click the picture: it takes a " +
-        "pixel, and the wheel and keys go to it: arrows turn, + and − or the wheel go nearer and " +
-        "back, W A S D Q E move, F changes between orbit and fly, 0 is the scene's own camera." });
+        "Drag turns, with Shift it moves; two fingers move and pinch. Click the picture: it " +
+        "takes a pixel, and the wheel and keys go to it: arrows turn, + and − or the wheel go " +
+        "nearer and back, W A S D Q E move, F changes between orbit and fly, 0 is the scene's " +
+        "own camera." });
     live.canvas = app.element("canvas", { id: "live-canvas", tabIndex: 0, width: 1, height: 1 });
     live.canvas.style.aspectRatio = app.settings.size.join(" / ");
     live.canvas.setAttribute("role", "application");
@@ -94,9 +95,12 @@ live.showFigures = () => {
     const entry = (label, value, format, name) => app.element("div", {},
         app.element("dt", { textContent: label }),
         app.element("dd", {}, app.numberElement(value, format, `live.${name}`)));
-    live.state.textContent = `${frame.width} × ${frame.height} pixels in ${Math.round(frame.ms)} ms` +
-        (live.refining ? "; a larger one is being drawn." : ".") +
-        ` Pictures a second while things change: ${Math.round(1000 / ms)}.`;
+    live.state.replaceChildren(
+        app.numberElement(frame.width, "count", "live.width"), " × ",
+        app.numberElement(frame.height, "count", "live.height"),
+        ` pixels in ${Math.round(frame.ms)} ms`,
+        live.refining ? "; a larger one is being drawn." : ".",
+        ` Pictures a second while things change: ${Math.round(1000 / ms)}.`);
     live.figures.replaceChildren(
         entry("Peels", frame.peels, "count", "peels"),
         entry("Geometry passes", frame.geometry_passes, "count", "geometry_passes"),
@@ -161,7 +165,8 @@ live.buildCamera = (section) => {
     const own = () => edits.original.cameras[app.settings.camera];
     const modes = app.element("div", { className: "buttons", role: "group" },
         ...["orbit", "fly"].map((mode) => {
-            const button = live.button(mode === "orbit" ? "Orbit" : "Fly", () => steer.setMode(mode));
+            const text = mode === "orbit" ? "Orbit" : "Fly";
+            const button = live.button(text, () => steer.setMode(mode));
             controls.all.push(() => {
                 button.setAttribute("aria-pressed", String(steer.mode === mode));
             });
@@ -180,10 +185,11 @@ live.buildCamera = (section) => {
         controls.choice("camera", "Camera", "", app.scene.cameras.map((one, i) =>
             one.name || `camera ${i}`)),
         controls.slider({
-            id: "camera-yfov", label: "Field of view", what: "camera.yfov_degrees", min: 1, max: 170,
-            step: 0.5, get: () => camera.round(steer.now().yfov * 180 / Math.PI),
+            id: "camera-yfov", label: "Field of view", what: "camera.yfov_degrees",
+            min: 1, max: 170, step: 0.5, get: () => camera.round(steer.now().yfov * 180 / Math.PI),
             own: () => camera.round(own().yfov * 180 / Math.PI),
-            set: (degrees) => put({ yfov: degrees === null ? own().yfov : degrees * Math.PI / 180 }),
+            set: (degrees) =>
+                put({ yfov: degrees === null ? own().yfov : degrees * Math.PI / 180 }),
             hint: "From bottom to top, in degrees" }),
         plane("near", "Near plane", () => 0, () => steer.now().far),
         plane("far", "Far plane", () => steer.now().near, () => Infinity));

@@ -18,8 +18,8 @@ const SPACE_EYE = 3.5; /* its distance from the middle, in widths of a card */
 
 /* ---- geometry ---- */
 
-/* Where CSS puts a point of the turned world, from the middle of the stage, in pixels: rotateY, then
- * rotateX, then perspective. y down, z towards the eye. */
+/* Where CSS puts a point of the turned world, from the middle of the stage, in pixels: rotateY,
+ * then rotateX, then perspective. y down, z towards the eye. */
 space.project = ([x, y, z], yaw, tilt, eye) => {
     const [a, b] = [yaw, tilt].map((degrees) => degrees * Math.PI / 180);
     const turnedX = x * Math.cos(a) + z * Math.sin(a), turnedZ = z * Math.cos(a) - x * Math.sin(a);
@@ -92,7 +92,8 @@ space.build = () => {
     space.stage.setAttribute("aria-label", "The layers as cards, nearest first");
     space.stage.setAttribute("aria-describedby", "space-help");
     space.none = app.element("div", { hidden: true },
-        app.element("p", {}), live.button("Show peel's layers", () => app.change({ method: "peel" })));
+        app.element("p", {}),
+        live.button("Show peel's layers", () => app.change({ method: "peel" })));
     space.table = app.element("div", { className: "table" });
     section.append(space.none, space.stage, space.buildControls(),
         app.element("p", { id: "space-help", className: "note", textContent:
@@ -104,7 +105,8 @@ space.build = () => {
 
 space.buildControls = () => {
     const slider = (name, label, min, max, unit) => {
-        const input = app.element("input", { type: "range", id: `space-${name}`, min, max, step: 1 });
+        const id = `space-${name}`;
+        const input = app.element("input", { type: "range", id, min, max, step: 1 });
         const number = app.element("output", { className: "number", htmlFor: input.id });
         input.addEventListener("input", () => {
             space[name] = Number(input.value);
@@ -141,8 +143,8 @@ space.fill = () => {
     space.rays = [0, 1].map(() => app.element("div", { className: "space-ray" }));
     space.world.replaceChildren(...space.cards.map((card) => card.element), ...space.rays);
     space.none.hidden = layers.length > 0;
-    space.none.firstChild.textContent = `Method ${method.choices[method.value]} keeps no picture of ` +
-        "each layer.";
+    space.none.firstChild.textContent =
+        `Method ${method.choices[method.value]} keeps no picture of each layer.`;
     space.stage.hidden = space.table.hidden = layers.length === 0;
     if (many)
         app.say(`The first ${SPACE_CARDS_MAX - 2} of ${layers.length - 2} layers are shown.`);
@@ -173,9 +175,10 @@ space.place = () => {
     if (space.cards.length === 0)
         return;
     const { yaw, tilt, spread } = space, count = space.cards.length;
-    const { width, height, shift } = space.fit(count, app.frame.width / app.frame.height, spread, yaw,
-        tilt, [space.stage.clientWidth, space.stage.clientHeight]);
-    const places = space.places(count, spread, width), moved = shift.map((v) => `${v}px`).join(", ");
+    const { width, height, shift } = space.fit(count, app.frame.width / app.frame.height, spread,
+        yaw, tilt, [space.stage.clientWidth, space.stage.clientHeight]);
+    const places = space.places(count, spread, width);
+    const moved = shift.map((v) => `${v}px`).join(", ");
     space.scene.style.perspective = `${SPACE_EYE * width}px`;
     space.scene.style.transform = `translate(${moved})`;
     space.world.style.transform = `rotateX(${tilt}deg) rotateY(${yaw}deg)`;
@@ -214,8 +217,8 @@ space.placeRay = (width, height) => {
     const y = ((app.pixel[1] + 0.5) / app.frame.height - 0.5) * height;
     const [near, far] = [space.cards[0].z + 0.06 * width, space.cards.at(-1).z];
     /* A line is seen from its side alone: there are two, at right angles. */
-    space.rays.forEach((ray, i) => Object.assign(ray.style, { width: `${near - far}px`,
-        transform: `translate3d(${x}px, ${y}px, ${near}px) rotateY(90deg) rotateX(${90 * i}deg)` }));
+    space.rays.forEach((ray, i) => Object.assign(ray.style, { width: `${near - far}px`, transform:
+        `translate3d(${x}px, ${y}px, ${near}px) rotateY(90deg) rotateX(${90 * i}deg)` }));
     space.placeDots([x, y], SPACE_EYE * width);
 };
 
@@ -227,8 +230,8 @@ space.placeDots = ([x, y], eye) => {
         const dot = app.element("div", { className: "space-dot" });
         const color = space.at(card);
         dot.classList.toggle("empty", color[3] === 0);
-        dot.style.background = color[3] > 0 ? `rgb(${space.color(color).slice(0, 3).map(Math.round)})`
-                                            : "none";
+        const rgb = space.color(color).slice(0, 3).map(Math.round);
+        dot.style.background = color[3] > 0 ? `rgb(${rgb})` : "none";
         const text = app.element("span", { textContent: card.buffer && color[3] > 0
             ? `α ${Number(color[3].toPrecision(3))}` : "" });
         if (taken.some(([a, b]) => Math.abs(a - at[0]) < 54 && Math.abs(b - at[1]) < 22))
@@ -266,10 +269,12 @@ space.showTable = () => {
         row.append(...space.numbers(card, head.length - 1));
         return row;
     });
-    const caption = app.pixel ? `Along pixel ${app.pixel.join(",")}` : "Choose a pixel for its numbers";
-    space.table.replaceChildren(app.element("table", {}, app.element("caption", {
-        textContent: caption }), app.element("thead", {}, app.element("tr", {}, ...head.map((text) =>
-        app.element("th", { scope: "col", textContent: text })))), app.element("tbody", {}, ...rows)));
+    const caption = app.element("caption", { textContent: app.pixel
+        ? `Along pixel ${app.pixel.join(",")}` : "Choose a pixel for its numbers" });
+    const top = app.element("tr", {}, ...head.map((text) =>
+        app.element("th", { scope: "col", textContent: text })));
+    space.table.replaceChildren(app.element("table", {}, caption,
+        app.element("thead", {}, top), app.element("tbody", {}, ...rows)));
 };
 
 /* The cells of a layer's row: what is stored at the pixel. */

@@ -46,7 +46,8 @@ steer.down = (event) => {
 
 steer.spread = () => {
     const [a, b] = [...steer.pointers.values()];
-    return { gap: Math.hypot(a[0] - b[0], a[1] - b[1]), x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2 };
+    return { gap: Math.hypot(a[0] - b[0], a[1] - b[1]),
+             x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2 };
 };
 
 steer.moved = (event) => {

@@ -12,9 +12,12 @@ const source = process.argv[2] ?? path.join(__dirname, "../..");
 
 /* The page's scripts, as one that stand after each other, without a page. */
 function load(...names) {
-    const context = vm.createContext({ app: { on() {}, permalink() {} }, draw: { display: (v) => v } });
-    for (const name of names)
-        vm.runInContext(fs.readFileSync(path.join(source, "src/web", `${name}.js`), "utf8"), context);
+    const context = vm.createContext({ app: { on() {}, permalink() {} },
+                                       draw: { display: (v) => v } });
+    for (const name of names) {
+        const file = path.join(source, "src/web", `${name}.js`);
+        vm.runInContext(fs.readFileSync(file, "utf8"), context);
+    }
     return vm.runInContext("({app, camera, edits, live, space})", context);
 }
 
@@ -31,8 +34,9 @@ const distance = (a, b) => Math.hypot(...a.map((v, i) => v - b[i]));
 /* tutorial's, one that mirrors and stretches, and one whose far plane is nowhere. */
 const BOUNDS = [[-2, -1, -2], [2, 1, 2]];
 const CAMERAS = [
-    { world: [0.936329185962677, 0, -0.3511234521865845, 0, -0.12483531981706619, 0.9346644282341003,
-              -0.3328941762447357, 0, 0.3281826078891754, 0.35553115606307983, 0.8751536011695862, 0,
+    { world: [0.936329185962677, 0, -0.3511234521865845, 0,
+              -0.12483531981706619, 0.9346644282341003, -0.3328941762447357, 0,
+              0.3281826078891754, 0.35553115606307983, 0.8751536011695862, 0,
               1.5, 2, 4, 1], yfov: 0.7853981633974483, near: 0.125, far: 100 },
     { world: [-2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1], yfov: 1, near: 1, far: 10 },
     { world: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -5, 1], yfov: 0.5, near: 1, far: null },
@@ -151,8 +155,9 @@ const tests = {
         assert.ok(!edits.any());
     },
     "what is none of the scene's edits is left out"() {
-        for (const text of ["2.alpha:0.5", "0.alpha:1.5", "0.alpha:", "0.alpha:x", "0.size:1", "0.alpha",
-                            "ambient:1,2", "ambient:-1,0,0", "camera1:1", "camera0:1,2", "constructor:1"]) {
+        for (const text of ["2.alpha:0.5", "0.alpha:1.5", "0.alpha:", "0.alpha:x", "0.size:1",
+                            "0.alpha", "ambient:1,2", "ambient:-1,0,0", "camera1:1", "camera0:1,2",
+                            "constructor:1"]) {
             const { materials, ambient, cameras } = edits.parse(text, makeScene());
             assert.equal(materials.size + cameras.size, 0, text);
             assert.equal(ambient, null, text);
@@ -187,20 +192,23 @@ const tests = {
     "cards: all within the stage, front first"() {
         assert.deepEqual(plain(space.places(1, 100, 100)), [0]);
         assert.deepEqual(plain(space.places(3, 100, 100)), [35, 0, -35]);
-        for (const [count, yaw, tilt, stage] of [[1, 0, 0, [300, 200]], [10, -42, -12, [900, 500]],
-                                                 [3, 0, 0, [2000, 200]], [48, 85, 30, [360, 240]], [5, 170, -90, [500, 900]]]) {
+        const cases = [[1, 0, 0, [300, 200]], [10, -42, -12, [900, 500]], [3, 0, 0, [2000, 200]],
+                       [48, 85, 30, [360, 240]], [5, 170, -90, [500, 900]]];
+        for (const [count, yaw, tilt, stage] of cases) {
             const { width, height, shift } = space.fit(count, 16 / 9, 60, yaw, tilt, stage);
             for (const z of space.places(count, 60, width))
                 for (const x of [-0.5, 0.5])
                     for (const y of [-0.5, 0.5]) {
-                        const at = space.project([x * width, y * height, z], yaw, tilt, 3.5 * width);
+                        const at = space.project([x * width, y * height, z], yaw, tilt,
+                                                 3.5 * width);
                         near(at.map((v, i) => Math.max(0, Math.abs(v + shift[i]) - stage[i] / 2)),
                              [0, 0]);
                     }
         }
     },
     "layers: of methods that keep them"() {
-        const frame = (peels, ...names) => ({ peels, buffer: (name) => names.includes(name) ? {} : undefined });
+        const frame = (peels, ...names) => ({
+            peels, buffer: (name) => names.includes(name) ? {} : undefined });
         const ids = (...all) => plain(space.layers(frame(...all)).map((one) => one.id));
         assert.deepEqual(ids(2, "peel.0.source", "peel.1.source", "opaque.source"),
                          ["peel-0", "peel-1", "opaque", "background"]);
