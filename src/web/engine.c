@@ -31,6 +31,7 @@ typedef struct Engine {
     Frame frame;
     Traced *traced;
     size_t traced_count, traced_room;
+    Retrace *retrace; /* of the scene and settings as they are; NULL: not yet */
     Text scene_text, settings_text, frame_text, history_text;
 } Engine;
 
@@ -71,10 +72,18 @@ static void print_numbers(Text *text, const char *name, const float *values, int
     text_print(text, "]");
 }
 
+/* Before anything changes that a pixel's history depends on. */
+static void forget_retrace(void)
+{
+    retrace_close(engine.retrace);
+    engine.retrace = NULL;
+}
+
 /* ---- the scene ---- */
 
 EXPORT(engine_open) int engine_open(const unsigned char *bytes, size_t count)
 {
+    forget_retrace();
     scene_free(&engine.scene);
     engine.desc = (RenderDesc){.width = 1, .height = 1, .threads = 1};
     return blob_read(bytes, count, &engine.scene);
@@ -156,6 +165,7 @@ EXPORT(engine_scene) const char *engine_scene(void)
 
 EXPORT(engine_set_material) int engine_set_material(int index, int field, double value)
 {
+    forget_retrace();
     Scene *scene = &engine.scene;
     if (index < 0 || (size_t)index >= scene->material_count || field < 0 || field > 7 ||
         !(value >= 0.0 && value <= 1.0))
@@ -178,6 +188,7 @@ EXPORT(engine_set_material) int engine_set_material(int index, int field, double
 
 EXPORT(engine_set_ambient) int engine_set_ambient(double red, double green, double blue)
 {
+    forget_retrace();
     Scene *scene = &engine.scene;
     const double values[] = {red, green, blue};
     float before[3];
@@ -193,6 +204,7 @@ EXPORT(engine_set_ambient) int engine_set_ambient(double red, double green, doub
 EXPORT(engine_set_camera)
 int engine_set_camera(int index, const double world[16], double yfov, double near, double far)
 {
+    forget_retrace();
     Scene *scene = &engine.scene;
     if (index < 0 || (size_t)index >= scene->camera_count)
         return result_fail(RESULT_BAD_INPUT, "camera %d: expected one of the scene's %zu", index,
@@ -252,6 +264,7 @@ static bool set_choice(RenderDesc *desc, const char *name, double value)
 
 EXPORT(engine_set) int engine_set(const char *name, double value)
 {
+    forget_retrace();
     RenderDesc *desc = &engine.desc;
     const struct {
         const char *name;
@@ -316,6 +329,7 @@ static void forget(void)
 
 EXPORT(engine_render) int engine_render(int width, int height, bool trace)
 {
+    forget_retrace();
     forget();
     engine.sink = (TraceSink){.put = keep, .details = true};
     engine.desc.width = width;
@@ -363,14 +377,14 @@ EXPORT(engine_frame) const char *engine_frame(void)
 EXPORT(engine_history) const char *engine_history(int x, int y)
 {
     Text *text = begin(&engine.history_text);
-    Retrace *retrace;
     History history = {0};
-    Result result = retrace_open(&engine.scene, &engine.desc, &retrace);
+    Result result = RESULT_OK;
+    if (!engine.retrace)
+        result = retrace_open(&engine.scene, &engine.desc, &engine.retrace);
     if (result == RESULT_OK)
-        result = retrace_pixel(retrace, x, y, &history);
+        result = retrace_pixel(engine.retrace, x, y, &history);
     if (result == RESULT_OK)
         history_json(&history, &engine.scene, text);
     history_free(&history);
-    retrace_close(retrace);
     return result == RESULT_OK ? finish(text) : NULL;
 }
