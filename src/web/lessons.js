@@ -11,6 +11,8 @@ const LESSONS = [];
 LESSONS.push({
     start: "step=peel-0-light&pixel=18,61",
     text: [
+        "Beside this text is the explorer: a picture as it is made, one step at a time. The lessons " +
+        "lead to the steps they are about. What else is seen there can wait.",
         "A *transparent* surface lets some of the light from behind it through. How much it keeps " +
         "for itself is its opacity, written *\u03b1* (alpha): of the light from behind, the part " +
         "1 \u2212 \u03b1 comes through. At \u03b1 = 0 the surface is not seen; at \u03b1 = 1 " +
@@ -104,8 +106,8 @@ LESSONS.push({
 LESSONS.push({
     start: "step=peel-0-depth&pixel=190,90",
     text: [
-        "Graphics hardware does not sort. What it has is the *depth test*: for each pixel it keeps " +
-        "a depth, and a fragment stays only if it is nearer than that. So drawing everything once, " +
+        "Graphics hardware does not sort. What it has is the *depth test*: a *depth buffer* holds one " +
+        "depth for each pixel, and a fragment stays only if it is nearer than that. So drawing everything once, " +
         "in any order, leaves the nearest fragment of every pixel. That is [the first layer]" +
         "(step=peel-0-depth) of a teapot, a plane and a ball through each other, all transparent: its " +
         "depth, light where it is near. The ring marks a pixel that has three layers.",
@@ -122,6 +124,9 @@ LESSONS.push({
         "one behind. A pass reads one depth buffer while it writes another, so there are two, and " +
         "[they change places](step=peel-1-swap) after each peel. When [a pass finds nothing]" +
         "(step=stop), all layers were taken, and in the right order at every pixel.",
+        "Opaque surfaces are drawn before all this, and no peel takes what is behind them: it must " +
+        "also be in front of their depth, the *opaque depth*. This scene has none; then it is 1, the " +
+        "farthest depth there is.",
     ],
     question: [
         "The number of peels can be limited, to save time. Which is the smallest number that " +

@@ -1,8 +1,9 @@
 /* Renders a frame as the pages' settings and edits say, without any of the pages' code, and writes
  * what they are to show: a line of JSON, then the bytes of each buffer.
  *
- * web_frame ref|truth SCENE WIDTH HEIGHT FILE [NAME=VALUE]...
+ * web_frame ref|plain|truth SCENE WIDTH HEIGHT FILE [NAME=VALUE]...
  *
+ * plain: ref without its trace.
  * NAME: a number of RenderDesc, the index of a setting's choice, or material.INDEX.FIELD with FIELD
  * red, green, blue, alpha, roughness, metallic or occlusion. SCENE: a built-in one. */
 #include "base/text.h"
@@ -201,7 +202,7 @@ int main(int argc, char **argv)
     TraceStore *store;
     Frame frame;
     if (!built_in || built_in->generate(&scene) != RESULT_OK)
-        stop("usage: web_frame ref|truth SCENE WIDTH HEIGHT FILE [NAME=VALUE]...");
+        stop("usage: web_frame ref|plain|truth SCENE WIDTH HEIGHT FILE [NAME=VALUE]...");
     desc.width = atoi(argv[3]);
     desc.height = atoi(argv[4]);
     for (int i = 6; i < argc; i++)
@@ -209,9 +210,9 @@ int main(int argc, char **argv)
     if (store_create(0, &store) != RESULT_OK)
         stop("trace");
     store_sink(store)->details = true;
-    bool truth = strcmp(argv[1], "truth") == 0;
-    Result result = truth ? truth_render(&scene, &desc, NULL, &frame)
-                          : pipeline_render(&scene, &desc, store_sink(store), &frame);
+    TraceSink *sink = strcmp(argv[1], "ref") == 0 ? store_sink(store) : NULL;
+    Result result = strcmp(argv[1], "truth") == 0 ? truth_render(&scene, &desc, NULL, &frame)
+                                                  : pipeline_render(&scene, &desc, sink, &frame);
     if (result != RESULT_OK)
         stop(argv[2]);
     Text head = {0};

@@ -59,10 +59,12 @@ async function close(page) {
 
 /* [what, value as shown, text] of every number that is visible. */
 function numbers(page) {
-    return page.evaluate(() => [...document.querySelectorAll("[data-what][data-value]")]
+    return page.evaluate(() => [...document.querySelectorAll("[data-what]")]
         .filter((element) => element.checkVisibility())
-        .map((element) => [element.dataset.what, element.dataset.value,
-                           element.value ?? element.textContent]));
+        .map((element) => {
+            const text = element.matches("input, select") ? element.value : element.textContent;
+            return [element.dataset.what, element.dataset.value ?? text, text];
+        }));
 }
 
 /* ---- frames of the program ---- */

@@ -1,0 +1,177 @@
+/* The course: each lesson's question is answered as a reader would, wrongly and rightly, and what the
+ * lessons lead to exists.
+ *
+ * node test_course.js PEEL */
+"use strict";
+
+const assert = require("node:assert/strict");
+const fs = require("node:fs");
+const os = require("node:os");
+const path = require("node:path");
+const { execFileSync } = require("node:child_process");
+const { launch, open, ready, close } = require("./pages.js");
+
+const [peel] = process.argv.slice(2);
+
+const MOST_BYTES = 15e6;
+
+/* ---- what a reader does ---- */
+
+const link = (page, text) => page.locator("#lesson a", { hasText: text }).first().click();
+
+/* Types into the focused control's number, or moves the focused slider or list. */
+async function type(page, selector, value) {
+    const control = page.locator(selector);
+    await control.fill(value);
+    await control.press("Enter");
+    await control.blur();
+}
+
+async function choose(page, pixel) {
+    await type(page, "#pixel-input", pixel);
+}
+
+/* The first pixel, for which say(pixel's index) of the page's frame. */
+const find = (page, say) => page.evaluate(`(() => {
+    const say = ${say}, [w, h] = app.settings.size;
+    for (let i = 0; i < w * h; i++)
+        if (say(i))
+            return [i % w, Math.floor(i / w)].join(",");
+})()`);
+
+const LAYERS = "app.frame.buffers.filter((b) => /^peel.\\d+.primitive$/.test(b.name))" +
+               ".filter((b) => b.data[i] !== 0xffffffff).length";
+const PAINTER_RIGHT = "[0, 1, 2].every((k) => window.painter[4 * i + k] === " +
+                      "app.frame.buffer('display').data[4 * i + k])";
+const keepPainter = (page) => page.evaluate(async () => {
+    window.painter = (await walk.other("painter")).display.data;
+});
+
+/* Of each lesson: [what is done, what the page says] in turn; the last is right. */
+const ANSWERS = [
+    [[async (page) => {}, /T is 0.75/],
+     [async (page) => {
+         await link(page, "move its alpha");
+         await type(page, "#material-4-alpha ~ input", "0.1");
+     }, /not what it lets through/],
+     [(page) => type(page, "#material-4-alpha ~ input", "0.9"), null]],
+    [[async (page) => {}, /the painter is wrong here/],
+     [(page) => choose(page, "0,0"), /0 layers/],
+     [async (page) => {
+         await keepPainter(page);
+         await choose(page, await find(page, `(i) => ${LAYERS} > 1 && ${PAINTER_RIGHT}`));
+     }, null]],
+    [[async (page) => link(page, "Set the passes"), /automatic/],
+     [(page) => slide(page, "#set-passes", 3), /never reached/],
+     [(page) => slide(page, "#set-passes", 11), /fewer will do/],
+     [(page) => slide(page, "#set-passes", 8), null]],
+    [[async (page) => {}, /0.421875/],
+     [async (page) => {
+         await link(page, "Set their alpha");
+         await type(page, "#material-4-alpha ~ input", "0.75");
+     }, /T is 0.015625/],
+     [(page) => type(page, "#material-4-alpha ~ input", "0.5"), null]],
+    [[async (page) => {}, /No pixel/],
+     [(page) => choose(page, "0,0"), /threw away \d/],
+     [async (page) => {
+         await link(page, "Its steps");
+         await ready(page);
+     }, /threw away \d/],
+     [async (page) => {
+         await link(page, "In the first peel");
+         await ready(page);
+         await choose(page, await find(page,
+             "(i) => app.frame.buffer('peel.0.farther').data[i] >= 3"));
+     }, null]],
+    [[async (page) => link(page, "Set the depth format"), /d32f/],
+     [(page) => page.selectOption("#set-depth", { label: "d16" }), /lost to ties/],
+     [(page) => page.selectOption("#set-method", { label: "weighted-average" }), /approximation/],
+     [(page) => page.selectOption("#set-method", { label: "peel-id" }), null]],
+];
+
+async function slide(page, selector, value) {
+    const slider = page.locator(selector);
+    await slider.focus();
+    for (let i = 0; i < 40 && Number(await slider.inputValue()) !== value; i++)
+        await slider.press(Number(await slider.inputValue()) < value ? "ArrowRight" : "ArrowLeft");
+}
+
+/* The page says so within a while; anything else is a failure. */
+async function says(page, right, pattern, where) {
+    const end = Date.now() + 10000;
+    for (;;) {
+        const [kind, text] = await page.locator("#lesson-verdict").evaluate((element) =>
+            [element.className, element.textContent]);
+        if (kind === (right ? "right" : "not-yet") && (right || pattern.test(text)))
+            return;
+        assert.ok(Date.now() < end, `${where}: "${text}" (${kind}), expected ${right ? "right" : pattern}`);
+        await page.waitForTimeout(50);
+    }
+}
+
+/* Every link of a lesson's text leads to a step, a view or a control that is there. */
+async function testLinks(page, where) {
+    const links = await page.locator("#lesson a[href^='#']").all();
+    assert.ok(links.length >= 2, where);
+    for (const one of links) {
+        const wanted = new URLSearchParams((await one.getAttribute("href")).slice(1));
+        await one.click();
+        await ready(page);
+        await page.waitForFunction(([step, view, method, focus]) =>
+            (!step || app.steps[app.step].id === step) && (!view || app.view === view) &&
+            (!method || app.settings.method.choices[app.settings.method.value] === method) &&
+            (!focus || document.activeElement.id === focus),
+            ["step", "view", "method", "focus"].map((name) => wanted.get(name)), { timeout: 10000 })
+            .catch(() => assert.fail(`${where}: "${wanted}" leads nowhere`));
+    }
+}
+
+async function testLesson(browser, folder, number) {
+    const where = `lesson ${number}`;
+    const page = await open(browser, path.join(folder, `lesson-${number}.html`));
+    for (const [act, said] of ANSWERS[number - 1]) {
+        await act(page);
+        await says(page, said === null, said, where);
+    }
+    await close(page);
+    const again = await open(browser, path.join(folder, `lesson-${number}.html`));
+    await testLinks(again, where);
+    await close(again);
+    console.log(`${where}: answered`);
+}
+
+async function testIndex(browser, folder) {
+    const page = await browser.newPage();
+    await page.goto(`file://${folder}/index.html`);
+    const links = await page.locator("ol.lessons a").all();
+    assert.equal(links.length, ANSWERS.length);
+    for (const one of links)
+        assert.ok(fs.existsSync(path.join(folder, await one.getAttribute("href"))));
+    await links[0].click();
+    await ready(page);
+    await page.click("nav.lessons >> text=All lessons");
+    await page.waitForSelector("ol.lessons");
+    await page.close();
+}
+
+async function main() {
+    const folder = fs.mkdtempSync(path.join(os.tmpdir(), "peel-course-"));
+    execFileSync(peel, ["explain", "--course", "-o", folder]);
+    const bytes = fs.readdirSync(folder).reduce((sum, name) =>
+        sum + fs.statSync(path.join(folder, name)).size, 0);
+    assert.ok(bytes < MOST_BYTES, `${bytes} bytes`);
+    const browser = await launch();
+    try {
+        await testIndex(browser, folder);
+        for (let number = 1; number <= ANSWERS.length; number++)
+            await testLesson(browser, folder, number);
+    } finally {
+        await browser.close();
+    }
+    fs.rmSync(folder, { recursive: true });
+}
+
+main().catch((error) => {
+    console.error(error.message);
+    process.exit(1);
+});
