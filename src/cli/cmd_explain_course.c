@@ -52,15 +52,16 @@ static const struct argp command_argp = {
 static Result write_lesson(const CourseCommand *command, int number, size_t *room)
 {
     const CourseLesson *lesson = &course_lessons[number - 1];
-    char file[16], line[96];
+    char file[16], line[96], lights[24] = "";
     course_file(number, file);
     RenderOptions options = options_default();
     options.scene_path = lesson->scene;
     options.desc.width = 320;
     options.desc.height = 180;
     options.desc.lights = lesson->lights;
-    snprintf(line, sizeof line, "peel explain %s --lights %d -o DIR", lesson->scene,
-             lesson->lights);
+    if (lesson->lights > 0)
+        snprintf(lights, sizeof lights, " --lights %d", lesson->lights);
+    snprintf(line, sizeof line, "peel explain %s%s -o DIR", lesson->scene, lights);
     ExplainLesson told = {.number = number, .titles = course_titles, .count = COURSE_LESSONS};
     ExplainPage page = {
         .dir = command->output, .file = file, .command = line, .max_bytes = *room, .lesson = &told};
