@@ -270,17 +270,36 @@ pixel.finalOf = (data) => {
     return Array.from(data.subarray(at, at + 4));
 };
 
+/* The final colour of an accumulation (frame/shading.h, Resolve): gl's is not traced. null where
+ * the formula does not lead from ref's accumulation to ref's final, as of opaque-blend seed. */
+pixel.resolved = (accum, ref) => {
+    /* Codes are fetched as products with the rounded 1/most, not as quotients. */
+    const most = { rgba8: 255, rgba16: 65535 }[pixel.history.accum_format];
+    const fetch = (value) => most ? Math.fround(Math.round(value * most) * Math.fround(1 / most))
+                                  : value;
+    const resolve = (stored) => {
+        const [r, g, b, t] = stored.map(fetch);
+        return [...[r, g, b].map((value, i) =>
+            Math.fround(value + Math.fround(app.scene.background[i] * t))), Math.fround(1 - t)];
+    };
+    const ours = resolve(pixel.history.accum.map(pixel.parse));
+    return ours.every((value, i) => Object.is(value, ref[i])) ? resolve(accum) : null;
+};
+
 pixel.sides = () => {
     const part = app.element("div", {}, app.element("h3", {}, "ref, gl and the truth ",
         app.element("span", { textContent: "final colour, linear, and coverage" })));
     const ref = pixel.history.final.map(pixel.parse);
     const accum = sides.glData("accum"), truth = sides.truth();
+    const gl = accum && pixel.glAfter({ step: "opaque", target: "accum" });
+    const glFinal = gl && pixel.resolved(gl, ref);
     const rows = [pixel.sideRow("ref", ref, ref)];
+    if (glFinal)
+        rows.push(pixel.sideRow("gl", glFinal, ref));
     if (truth)
         rows.push(pixel.sideRow("truth", pixel.finalOf(truth), ref));
     part.append(pixel.table("sides", ["", "R", "G", "B", "Coverage", "ULP from ref"], rows,
                             "Results beside each other"));
-    const gl = accum && pixel.glAfter({ step: "opaque", target: "accum" });
     const apart = gl && gl.map((value, i) => pixel.ulp(value, pixel.parse(pixel.history.accum[i])));
     part.append(app.element("p", { className: "note", textContent:
         gl ? `gl's accumulation: ${Math.max(...apart) === 0 ? "the same bits"
