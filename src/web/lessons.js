@@ -104,13 +104,13 @@ LESSONS.push({
 /* ---- 3: peeling ---- */
 
 LESSONS.push({
-    start: "step=peel-0-depth&pixel=190,90",
+    start: "step=peel-0-depth&pixel=164,74",
     text: [
         "Graphics hardware does not sort. What it has is the *depth test*: a *depth buffer* holds one " +
         "depth for each pixel, and a fragment stays only if it is nearer than that. So drawing everything once, " +
         "in any order, leaves the nearest fragment of every pixel. That is [the first layer]" +
-        "(step=peel-0-depth) of a teapot, a plane and a ball through each other, all transparent: its " +
-        "depth, light where it is near. The ring marks a pixel that has three layers.",
+        "(step=peel-0-depth) of the four panes: its depth, light where it is near. The ring marks a " +
+        "pixel that lies behind all four.",
         "For the second layer, everything is drawn again, with one more test: a fragment is thrown " +
         "away unless it is behind the depth that the first layer has at this pixel, the " +
         "*previous depth*. Of what is left the depth test keeps the nearest: [the second layer]" +
@@ -124,9 +124,9 @@ LESSONS.push({
         "one behind. A pass reads one depth buffer while it writes another, so there are two, and " +
         "[they change places](step=peel-1-swap) after each peel. When [a pass finds nothing]" +
         "(step=stop), all layers were taken, and in the right order at every pixel.",
-        "Opaque surfaces are drawn before all this, and no peel takes what is behind them: it must " +
-        "also be in front of their depth, the *opaque depth*. This scene has none; then it is 1, the " +
-        "farthest depth there is.",
+        "Opaque surfaces, here the ground, are drawn before all this. What is behind them cannot be " +
+        "seen, so a fragment must also be [in front of their depth](step=peel-1-compare), the *opaque " +
+        "depth*.",
     ],
     question: [
         "The number of peels can be limited, to save time. Which is the smallest number that " +
@@ -147,9 +147,9 @@ LESSONS.push({
         if (frame.peels < passes)
             return { right: false, text: ["Nothing is lost, but only ", count(frame.peels, "peels"),
                 " peels found anything: fewer will do."] };
-        return { right: true, text: ["Some pixel has ", count(frame.max_layers, "max_layers"),
+        return { right: true, text: ["Some pixels have ", count(frame.max_layers, "max_layers"),
             " layers, and each peel takes one of them: the nearest behind the previous depth. With " +
-            "one peel less its last layer would be lost."] };
+            "one peel less the last layer would be lost."] };
     },
 });
 

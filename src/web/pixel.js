@@ -278,7 +278,7 @@ pixel.sides = () => {
     const rows = [pixel.sideRow("ref", ref, ref)];
     if (truth)
         rows.push(pixel.sideRow("truth", pixel.finalOf(truth), ref));
-    part.append(pixel.table("sides", ["", "R", "G", "B", "Coverage", "ULP from ref"], rows,
+    part.append(pixel.table("sides", ["Renderer", "R", "G", "B", "Coverage", "ULP from ref"], rows,
                             "Results beside each other"));
     const gl = accum && pixel.glAfter({ step: "opaque", target: "accum" });
     const apart = gl && gl.map((value, i) => pixel.ulp(value, pixel.parse(pixel.history.accum[i])));

@@ -62,9 +62,9 @@ const ANSWERS = [
          await choose(page, await find(page, `(i) => ${LAYERS} > 1 && ${PAINTER_RIGHT}`));
      }, null]],
     [[async (page) => link(page, "Set the passes"), /automatic/],
-     [(page) => slide(page, "#set-passes", 3), /never reached/],
-     [(page) => slide(page, "#set-passes", 11), /fewer will do/],
-     [(page) => slide(page, "#set-passes", 8), null]],
+     [(page) => slide(page, "#set-passes", 2), /never reached/],
+     [(page) => slide(page, "#set-passes", 7), /fewer will do/],
+     [(page) => slide(page, "#set-passes", 4), null]],
     [[async (page) => {}, /0.421875/],
      [async (page) => {
          await link(page, "Set their alpha");
