@@ -241,8 +241,8 @@ LESSONS.push({
             return { right: false, text: ["Here the depth test threw away ", number, ". Look " +
                 "where several teapots are behind each other."] };
         return { right: true, text: ["Here it threw away ", number, ". Drawn from far to near, " +
-            "each was the nearest for a while: lit as it was drawn, all of them were lit for nothing, " +
-            "in this peel alone. Deferred, one fragment is."] };
+            "each was the nearest for a while: lit as it was drawn, all of them were lit for " +
+            "nothing, in this peel alone. Deferred, one fragment is."] };
     },
 });
 
@@ -280,7 +280,8 @@ LESSONS.push({
         const lost = course.value(frame.lost_to_ties, "frame.lost_to_ties", "count");
         if (now.depth.choices[now.depth.value] !== "d16")
             return { right: false, text: ["Depths are stored as ",
-                now.depth.choices[now.depth.value], ", and ", lost, " fragments are lost to ties."] };
+                now.depth.choices[now.depth.value], ", and ", lost,
+                " fragments are lost to ties."] };
         if (!app.data.program.methods.find((one) => one.name === method).exact)
             return { right: false, text: [`${method} loses none, but it is an approximation: see ` +
                 "how its image differs."] };
@@ -289,7 +290,7 @@ LESSONS.push({
         return { right: true, text: [method === "peel-id"
             ? "peel-id compares the number of the triangle where depths are equal, so that each " +
               "fragment has its place, and none is lost."
-            : "No fragment is lost to ties now. The method peel-id is made for this: where depths " +
-              "are equal it compares the number of the triangle."] };
+            : "No fragment is lost to ties now. The method peel-id is made for this: where " +
+              "depths are equal it compares the number of the triangle."] };
     },
 });

@@ -22,8 +22,8 @@ async function launch() {
     return chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox"] });
 }
 
-/* A page, once it is ready where it computes. page.problems: errors on its console, and requests that
- * leave the disk; context: of playwright's newContext. */
+/* A page, once it is ready where it computes. page.problems: errors on its console, and requests
+ * that leave the disk; context: of playwright's newContext. */
 async function open(browser, file, hash = "", context = {}) {
     const inside = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...context });
     const page = await inside.newPage();
