@@ -188,10 +188,11 @@ static bool meets(const Primitive *primitive, PixelRect rect)
 /* The one tile's bin. */
 static Result bin_part(const PrimitiveList *list, PixelRect rect, Bins *out)
 {
-    size_t count = 0, room = 0;
+    size_t count = 0, room = 1;
     Result result = RESULT_OK;
     out->first = memory_array(2, sizeof *out->first);
-    if (!out->first)
+    out->item = memory_array(room, sizeof *out->item);
+    if (!out->first || !out->item)
         return RESULT_NO_MEMORY;
     for (size_t i = 0; i < list->count && result == RESULT_OK; i++) {
         if (!meets(&list->items[i], rect))

@@ -287,7 +287,7 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
 
 static Result broken_gl(const Scene *scene, const RenderDesc *desc, TraceSink *trace, Frame *out)
 {
-    Saboteur saboteur = {{put}, trace};
+    Saboteur saboteur = {{.put = put}, trace};
     Result result = gl_render(scene, desc, trace ? &saboteur.sink : NULL, out);
     if (result == RESULT_OK && fault == FAULT_FINAL)
         ((uint32_t *)image_pixel(&out->final, 3, 4))[1] ^= 1;

@@ -57,7 +57,7 @@ static Result put_faulty(TraceSink *sink, const TraceBuffer *buffer)
 static Result render_faulty(const Scene *scene, const RenderDesc *desc, TraceSink *trace,
                             Frame *out)
 {
-    FaultySink sink = {{put_faulty}, trace};
+    FaultySink sink = {{.put = put_faulty}, trace};
     return pipeline_render(scene, desc, &sink.sink, out);
 }
 
