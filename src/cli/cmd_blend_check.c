@@ -328,7 +328,8 @@ static int sequences_code(const SequenceReport *report)
 {
     size_t best = sequence_report_best(report);
     if (best != SIZE_MAX)
-        return report->candidates[best].info->wrong ? EXIT_DIFFER : EXIT_AGREE;
+        return arithmetic_is_wrong(report->candidates[best].info, report->format) ? EXIT_DIFFER
+                                                                                  : EXIT_AGREE;
     return report->outside ? EXIT_DIFFER : EXIT_WARN;
 }
 

@@ -84,7 +84,7 @@ static void print_row(const BlendReport *report, const BlendCandidate *one, FILE
         fprintf(out, "\n%28s", "");
     print_tally(report->format, &one->groups[GROUP_COLOR], out);
     print_tally(report->format, &one->groups[GROUP_ALPHA], out);
-    if (one->info && one->info->wrong)
+    if (one->info && arithmetic_is_wrong(one->info, report->format))
         fputs("  wrong", out);
     if (one->vectors < report->vectors)
         fprintf(out, "  in %s", summary_count(one->vectors, count));

@@ -28,7 +28,8 @@ static json_t *candidate_of(Document *json, const BlendReport *report, const Ble
                                            &one->arithmetic, &one->worst[i]));
     document_put(json, object, "name", document_string(one->name));
     document_put(json, object, "named", json_boolean(one->info != NULL));
-    document_put(json, object, "wrong", json_boolean(one->info && one->info->wrong));
+    document_put(json, object, "wrong",
+                 json_boolean(one->info && arithmetic_is_wrong(one->info, report->format)));
     document_put(json, object, "refused",
                  one->refused ? document_string(one->refused) : json_null());
     document_put(json, object, "vectors", document_count(one->vectors));
@@ -126,7 +127,8 @@ Result report_blend_sequences_json(const SequenceReport *report, const char *sub
         const SequenceCandidate *one = &report->candidates[i];
         json_t *object = json_object();
         document_put(&json, object, "name", document_string(one->info->name));
-        document_put(&json, object, "wrong", json_boolean(one->info->wrong));
+        document_put(&json, object, "wrong",
+                     json_boolean(arithmetic_is_wrong(one->info, report->format)));
         document_put(&json, object, "values", document_count(one->values));
         document_put(&json, object, "differing", document_count(one->differing));
         document_put(&json, object, "max_ulp", ulp_of(one->max_ulp));
@@ -151,10 +153,15 @@ Result report_blend_list_json(const BlendWrongList *list, const char *path)
     json_t *root = json_object(), *all = json_array(), *rows = json_array();
     for (size_t i = 0; i < arithmetic_count(); i++) {
         const ArithmeticInfo *info = arithmetic_info(i);
-        json_t *object = json_object();
+        json_t *object = json_object(), *wrong_in = json_array();
+        for (int k = 0; k < BLEND_FORMATS; k++)
+            if (arithmetic_is_wrong(info, blend_formats[k]))
+                document_append(&json, wrong_in,
+                                document_string(format_info(blend_formats[k])->name));
         document_put(&json, object, "name", document_string(info->name));
         document_put(&json, object, "what", document_string(info->what));
         document_put(&json, object, "wrong", json_boolean(info->wrong));
+        document_put(&json, object, "wrong_in", wrong_in);
         document_append(&json, all, object);
     }
     for (size_t i = 0; i < list->count; i++) {
