@@ -121,7 +121,7 @@ static error_t parse_set(const char *text, void *context)
 static error_t parse_equation(const char *text, BlendCheckCommand *command)
 {
     if (equation_parse(text, &command->equation) != RESULT_OK)
-        return options_error("--equation: %s", result_message());
+        return options_error("--%s", result_message());
     command->has_equation = true;
     return 0;
 }
