@@ -93,10 +93,13 @@ void blend_rules_start(PixelFormat format, BlendRuleTally *out)
 
 /* ---- the exact result, and how far a way may be off ------------------------------------------ */
 
+/* The unit in the last place of x, and that of the denormals at 0. */
 static double exponent_unit(double x, int bits, int least)
 {
     int exponent;
     frexp(x, &exponent); /* |x| in [2^(exponent − 1), 2^exponent) */
+    if (x == 0.0)
+        return ldexp(1.0, least);
     exponent -= bits;
     return ldexp(1.0, exponent > least ? exponent : least);
 }

@@ -333,6 +333,28 @@ START_TEST(test_rules_floats)
 }
 END_TEST
 
+/* Keep in r32f: the alpha that is not there is 1, so s·(1 − 1) + d is d, and nothing is rounded.
+ * The driver computes s + 1·(d − s), which loses a d far below s. */
+START_TEST(test_rules_keep_one_channel)
+{
+    BlendRuleTally tallies[BLEND_RULES];
+    const float value[4] = {2.0f}, pixel[4] = {0x1p-25f};
+    const Arithmetic driver = {.kind = ARITHMETIC_DRIVER, .fused = true};
+    const BlendEquation *keep = &equation_info(EQUATION_KEEP)->equation;
+    BlendSteps steps[4];
+    arithmetic_steps(&driver, keep, FORMAT_R32F, value, pixel, steps);
+    ck_assert_uint_eq(steps[0].stored, bits(0.0f));
+    for (int i = 0; i < 2; i++) {
+        judge(EQUATION_KEEP, FORMAT_R32F, value, pixel, i ? steps[0].stored : bits(pixel[0]),
+              tallies);
+        ck_assert_uint_eq(rule(tallies, "OpenGL", "2.3.4")->outside, i);
+        ck_assert_uint_eq(rule(tallies, "OpenGL", "17.3.6")->outside, i);
+        ck_assert_uint_eq(rule(tallies, "Vulkan", "")->outside, i);
+        ck_assert_uint_eq(rule(tallies, "Direct3D", "17.5, 3.1")->outside, i);
+    }
+}
+END_TEST
+
 /* What rules say nothing of is not counted; a NaN that Direct3D wants back is. */
 START_TEST(test_rules_unstated)
 {
@@ -428,6 +450,7 @@ int main(void)
     tcase_add_test(tcase, test_worst_in_order);
     tcase_add_test(tcase, test_rules_codes);
     tcase_add_test(tcase, test_rules_floats);
+    tcase_add_test(tcase, test_rules_keep_one_channel);
     tcase_add_test(tcase, test_rules_unstated);
     tcase_add_loop_test(tcase, test_rules_keep, 0, BLEND_FORMATS);
     tcase_add_test(tcase, test_sequences);
