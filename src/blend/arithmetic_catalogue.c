@@ -1,8 +1,9 @@
 /* The named arithmetics, and arithmetics as text.
  *
- * Right is what the APIs allow: one rounding an operation, to nearest or toward zero, denormals
- * kept or flushed (OpenGL 4.6 core 2.3.4; Direct3D 11.3 3.1), and of integers what keeps 0 and 1
- * (OpenGL 4.6 core 2.3.5: the greatest code is 1 exactly) and is less than a code off. */
+ * Right is what the APIs allow: one rounding an operation, to nearest or toward zero (OpenGL says
+ * no more than how accurate it is), denormals kept or flushed (Direct3D flushes), and of integers
+ * what keeps 0 and 1 (glBlendFunc: converting codes "must leave the values 0 and 1 invariant")
+ * and is less than a code off. study/blend_rules.c has the sources. */
 #include "blend/arithmetic.h"
 
 #include <stdio.h>
@@ -26,9 +27,9 @@ static const ArithmeticInfo infos[] = {
     {"separate", "float operations one by one, stored to nearest: C, GLSL precise, HLSL precise",
      STEPS(.fused = false)},
     {"separate-truncated",
-     "float operations one by one, stored toward zero: D3D11.3 3.2.2, from float to half",
+     "float operations one by one, stored toward zero: Direct3D from float to half",
      STEPS(.store = BLEND_TOWARD_ZERO)},
-    {"separate-flushed", "float operations with denormals as zeros, stored to nearest: D3D11.3 3.1",
+    {"separate-flushed", "float operations with denormals as zeros, stored to nearest: Direct3D",
      STEPS(.flush = true)},
     {"separate-flushed-truncated", "float operations with denormals as zeros, stored toward zero",
      STEPS(.flush = true, .store = BLEND_TOWARD_ZERO)},
@@ -117,10 +118,9 @@ static const ArithmeticInfo infos[] = {
      MISTAKE(MISTAKE_EARLY_OUT_254)},
     {"clamped-early", "the source clamped to [0, 1], though the format is float",
      MISTAKE(MISTAKE_CLAMPED_EARLY)},
-    {"clamped-late", "a unorm target's source not clamped before it is blended (GL 17.3.6)",
+    {"clamped-late", "a unorm target's source not clamped before it is blended: OpenGL clamps it",
      MISTAKE(MISTAKE_CLAMPED_LATE)},
-    {"nan-zero", "NaN stored as 0 in float formats: D3D11.3 3.1 keeps it",
-     MISTAKE(MISTAKE_NAN_ZERO)},
+    {"nan-zero", "NaN stored as 0 in float formats: Direct3D keeps it", MISTAKE(MISTAKE_NAN_ZERO)},
 
     /* Wrong: too few bits. */
     {"complement-codes", "1 - x computed in 8 bits, the rest in float",
