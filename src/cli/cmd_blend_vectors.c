@@ -286,6 +286,10 @@ static Result choose(VectorsCommand *command)
         result = result_fail(RESULT_BAD_INPUT, "--arithmetic all: expected --checksum");
     if (result == RESULT_OK && command->checksum && strcmp(command->output, "-") != 0)
         result = result_fail(RESULT_BAD_INPUT, "--checksum: expected no -o, it prints");
+    if (result == RESULT_OK && command->checksum && command->has_form)
+        result = result_fail(RESULT_BAD_INPUT, "--checksum: expected no --form, it prints");
+    if (result == RESULT_OK && command->threads && !command->checksum)
+        result = result_fail(RESULT_BAD_INPUT, "--threads: expected --checksum");
     if (result == RESULT_OK && !command->checksum)
         result = choose_form(command);
     if (result == RESULT_OK && !command->checksum && command->form == VECTOR_BINARY &&

@@ -62,6 +62,11 @@ has 'a right arithmetic' '^= codes-nearest'
 has 'a right arithmetic' '^verdict: a right arithmetic, all values$'
 has 'a right arithmetic' '4,000 vectors, 16,000 values'
 has 'a right arithmetic' '^Direct3D .* none$'
+has 'a right arithmetic' '^The same on these vectors:$'
+has 'a right arithmetic' '^  source-stored'
+cp output whole
+exits 1 'all indented as the first' grep -q -E '^ [a-z]|: $' whole
+cp whole output
 narrow 'a right arithmetic'
 json 'a right arithmetic' 'd.exit_code === 0 && d.reports[0].unexplained === 0'
 json 'a right arithmetic' 'd.reports[0].verdict === "named" && d.reports[0].values === 16000'

@@ -107,6 +107,8 @@ refused "--threads 0: expected " --checksum --threads 0
 refused "--arithmetic codes-nearest: " --format rgba32f --arithmetic codes-nearest
 refused "--arithmetic all: expected --checksum" --arithmetic all
 refused "--checksum: expected no -o" --checksum -o out.csv
+refused "--checksum: expected no --form" --checksum --form csv
+refused "--threads: expected --checksum" --threads 2
 refused "-o out.txt: expected a name ending in .csv, .jsonl or .bin, or --form" -o out.txt
 refused "seed or index above 2^53 - 1" --set random --first 9007199254740991 --count 2
 refused "'stray': expected no arguments" stray
