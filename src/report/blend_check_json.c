@@ -43,7 +43,17 @@ static json_t *candidate_of(Document *json, const BlendReport *report, const Ble
     return object;
 }
 
-static json_t *rule_of(Document *json, const BlendRuleTally *rule)
+/* The value farthest outside, or else with the largest error. */
+static json_t *largest_of(Document *json, PixelFormat format, const BlendRuleTally *rule)
+{
+    json_t *object = blend_json_operands(json, format, rule->set, rule->index, rule->channel,
+                                         rule->source, rule->pixel);
+    document_put(json, object, "exact", document_real(rule->exact));
+    document_put(json, object, "got", blend_json_bits(format, rule->got));
+    return object;
+}
+
+static json_t *rule_of(Document *json, PixelFormat format, const BlendRuleTally *rule)
 {
     json_t *object = json_object();
     document_put(json, object, "rule", document_string(rule->info->name));
@@ -55,6 +65,8 @@ static json_t *rule_of(Document *json, const BlendRuleTally *rule)
     document_put(json, object, "outside", document_count(rule->outside));
     document_put(json, object, "largest_units", document_real(rule->largest));
     document_put(json, object, "largest", document_real(rule->largest_real));
+    document_put(json, object, "example",
+                 rule->has_example ? largest_of(json, format, rule) : json_null());
     return object;
 }
 
@@ -75,7 +87,7 @@ static json_t *report_of(Document *json, const ReportBlend *blend)
         document_append(json, candidates, candidate_of(json, report, &report->candidates[i]));
     for (int i = 0; i < BLEND_RULES; i++)
         if (report->rules[i].applies)
-            document_append(json, rules, rule_of(json, &report->rules[i]));
+            document_append(json, rules, rule_of(json, report->format, &report->rules[i]));
     document_put(json, object, "format", document_string(format_info(report->format)->name));
     document_put(json, object, "equation", document_string(equation));
     document_put(json, object, "vectors", document_count(report->vectors));
@@ -86,6 +98,10 @@ static json_t *report_of(Document *json, const ReportBlend *blend)
     document_put(json, object, "unexplained", document_count(blend_unexplained(report)));
     document_put(json, object, "verdict",
                  document_string(blend_verdict_name(blend_verdict(report, blend->api))));
+    document_put(json, object, "against",
+                 report->has_against ? document_string(report->candidates[0].name) : json_null());
+    document_put(json, object, "api",
+                 document_string(blend->api < API_COUNT ? blend_api_name(blend->api) : "any"));
     document_put(json, object, "arithmetics", candidates);
     document_put(json, object, "rules", rules);
     return object;
