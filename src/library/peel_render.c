@@ -184,7 +184,7 @@ static __attribute__((noinline)) PeelResult render(const PeelScene *scene, const
 {
     Frame frame;
     Image accum = {0};
-    Tap tap = {.sink = {tap_put}, .trace = trace, .accum = images->accum ? &accum : NULL};
+    Tap tap = {.sink = {.put = tap_put}, .trace = trace, .accum = images->accum ? &accum : NULL};
     TraceSink *sink = trace || images->accum ? &tap.sink : NULL;
     Result result = renderer(&scene->scene, desc, sink, &frame);
     if (result == RESULT_OK) {
