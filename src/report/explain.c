@@ -93,20 +93,23 @@ static Result write(const ExplainDesc *explain, const Text *data, const char *di
     return file_writer_close(&page, true);
 }
 
-Result report_explain_check(const char *name, const TraceStore *store)
+static Result pass_on(TraceSink *sink, const TraceBuffer *buffer)
 {
-    double bytes = 0.0;
-    for (int i = 0; i < store_count(store); i++) {
-        const StoredBuffer *buffer = store_buffer(store, i);
-        bytes += (double)format_pixel_bytes(buffer->format) * buffer->width * buffer->height;
-    }
-    if (bytes <= (double)EXPLAIN_MAX_TRACE_BYTES)
-        return RESULT_OK;
+    ExplainSink *all = (ExplainSink *)sink;
+    all->bytes +=
+        format_pixel_bytes(buffer->format) * (size_t)buffer->width * (size_t)buffer->height;
+    if (all->bytes <= EXPLAIN_MAX_TRACE_BYTES)
+        return all->next->put(all->next, buffer);
+    all->full = true;
     return result_fail(RESULT_UNSUPPORTED,
-                       "%s: a page cannot keep the %.0f MB of this frame's %d buffers, expected at "
-                       "most %.0f: a smaller --size, or fewer --passes",
-                       name, 1e-6 * bytes, store_count(store),
-                       1e-6 * (double)EXPLAIN_MAX_TRACE_BYTES);
+                       "%s: a page cannot keep this frame, its buffers up to %s take more than "
+                       "%.0f MB: expected a smaller --size, or fewer --passes",
+                       all->name, buffer->name, 1e-6 * (double)EXPLAIN_MAX_TRACE_BYTES);
+}
+
+ExplainSink report_explain_sink(TraceSink *next, const char *name)
+{
+    return (ExplainSink){.sink = {.put = pass_on, .details = true}, .next = next, .name = name};
 }
 
 Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
