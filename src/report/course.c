@@ -19,12 +19,12 @@ const char *const course_titles[COURSE_LESSONS] = {
 };
 
 const CourseLesson course_lessons[COURSE_LESSONS] = {
-    {"alpha_ladder", 0, "What a transparent surface does to light, in two numbers."},
+    {"alpha_ladder", 0, "How much light a surface keeps, and how much it lets through."},
     {"crossing_planes", 0, "Objects have one order; their fragments have one at every pixel."},
-    {"tutorial", 0, "How a depth test, used again and again, finds all layers in order."},
+    {"crossing_planes", 0, "How a depth test, used again and again, finds all layers in order."},
     {"alpha_ladder", 0, "How layers that come from front to back are put together."},
     {"teapot_hall", 16, "Why surfaces are stored first and lit once."},
-    {"crossing_planes", 0, "What is lost when two depths become the same number."},
+    {"tutorial", 0, "What is lost when two depths become the same number."},
 };
 
 void course_file(int number, char file[16])

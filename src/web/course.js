@@ -60,6 +60,7 @@ course.make = () => {
     });
     for (const what of ["frame", "pixel", "settings", "edit", "view"])
         app.on(what, course.later);
+    live.listeners.push(course.later);
 };
 
 course.fill = (lesson, titles) => {
@@ -94,6 +95,7 @@ course.others = (number, titles) => {
 
 course.later = () => {
     clearTimeout(course.timer);
+    course.verdict?.classList.add("late");
     course.timer = setTimeout(course.check, COURSE_WAIT_MS);
 };
 
@@ -106,6 +108,9 @@ course.frame = async () => {
     frame.buffer = (name) => buffers.get(name);
     return frame;
 };
+
+/* The figures of what the reader sees: the live view's picture may be larger than the traced frame. */
+course.figures = async () => app.view === "live" && live.frame ? live.frame : app.frame;
 
 /* What a frame stored at a pixel. */
 course.at = (frame, name, [x, y], channel = 0) => {

@@ -9,10 +9,10 @@ const LESSONS = [];
 /* ---- 1: alpha ---- */
 
 LESSONS.push({
-    start: "step=peel-0-light&pixel=18,61",
+    start: "step=display&pixel=18,61",
     text: [
-        "Beside this text is the explorer: a picture as it is made, one step at a time. The lessons " +
-        "lead to the steps they are about. What else is seen there can wait.",
+        "Beside this text, or below it, is the explorer: a picture as it is made, one step at a time. " +
+        "The lessons lead to the steps they are about; what else is seen there can wait.",
         "A *transparent* surface lets some of the light from behind it through. How much it keeps " +
         "for itself is its opacity, written *\u03b1* (alpha): of the light from behind, the part " +
         "1 \u2212 \u03b1 comes through. At \u03b1 = 0 the surface is not seen; at \u03b1 = 1 " +
@@ -104,13 +104,13 @@ LESSONS.push({
 /* ---- 3: peeling ---- */
 
 LESSONS.push({
-    start: "step=peel-0-depth&pixel=190,90",
+    start: "step=peel-0-depth&pixel=164,74",
     text: [
         "Graphics hardware does not sort. What it has is the *depth test*: a *depth buffer* holds one " +
         "depth for each pixel, and a fragment stays only if it is nearer than that. So drawing everything once, " +
         "in any order, leaves the nearest fragment of every pixel. That is [the first layer]" +
-        "(step=peel-0-depth) of a teapot, a plane and a ball through each other, all transparent: its " +
-        "depth, light where it is near. The ring marks a pixel that has three layers.",
+        "(step=peel-0-depth) of the four panes: its depth, light where it is near. The ring marks a " +
+        "pixel that lies behind all four.",
         "For the second layer, everything is drawn again, with one more test: a fragment is thrown " +
         "away unless it is behind the depth that the first layer has at this pixel, the " +
         "*previous depth*. Of what is left the depth test keeps the nearest: [the second layer]" +
@@ -119,14 +119,14 @@ LESSONS.push({
         "Why is the previous depth needed? Each pass draws the same surfaces again, and the " +
         "previous depth is all it knows of the passes before. Without it, every pass would find the " +
         "first layer again. [See what it throws away](step=peel-1-discard): orange is what was taken " +
-        "already, green is what must wait for a later pass.",
+        "already, green is what must wait for a later pass, and striped is both.",
         "And so on: each pass, called a *peel*, takes one layer from every pixel, always the next " +
         "one behind. A pass reads one depth buffer while it writes another, so there are two, and " +
         "[they change places](step=peel-1-swap) after each peel. When [a pass finds nothing]" +
         "(step=stop), all layers were taken, and in the right order at every pixel.",
-        "Opaque surfaces are drawn before all this, and no peel takes what is behind them: it must " +
-        "also be in front of their depth, the *opaque depth*. This scene has none; then it is 1, the " +
-        "farthest depth there is.",
+        "Opaque surfaces, here the ground, are drawn before all this. What is behind them cannot be " +
+        "seen, so a fragment must also be [in front of their depth](step=peel-1-compare), the *opaque " +
+        "depth*.",
     ],
     question: [
         "The number of peels can be limited, to save time. Which is the smallest number that " +
@@ -134,22 +134,23 @@ LESSONS.push({
     ],
     source: "C. Everitt, Interactive Order-Independent Transparency, NVIDIA, 2001",
     async check() {
-        const frame = await course.frame(), { passes } = app.settings;
+        const frame = await course.figures(), { passes } = app.settings;
         const count = (value, what) => course.value(value, `frame.${what}`, "count");
         const lost = frame.lost_to_pass_limit;
         if (passes === 0)
             return { right: false, text: "Passes is automatic now: the program goes on until a pass " +
                 "finds nothing. Set a number." };
         if (lost > 0)
-            return { right: false, text: ["With ", count(frame.peels, "peels"), " peels ",
+            return { right: false, text: ["With ", count(frame.peels, "peels"),
+                frame.peels === 1 ? " peel " : " peels ",
                 count(lost, "lost_to_pass_limit"), " fragments are never reached: they are behind " +
                 "all layers that were taken."] };
         if (frame.peels < passes)
             return { right: false, text: ["Nothing is lost, but only ", count(frame.peels, "peels"),
                 " peels found anything: fewer will do."] };
-        return { right: true, text: ["Some pixel has ", count(frame.max_layers, "max_layers"),
+        return { right: true, text: ["Some pixels have ", count(frame.max_layers, "max_layers"),
             " layers, and each peel takes one of them: the nearest behind the previous depth. With " +
-            "one peel less its last layer would be lost."] };
+            "one peel less the last layer would be lost."] };
     },
 });
 
@@ -266,7 +267,7 @@ LESSONS.push({
     ],
     source: "C. Everitt, 2001; Peel's own ref/pipeline/NUMBERS.md",
     async check() {
-        const frame = await course.frame(), now = app.settings;
+        const frame = await course.figures(), now = app.settings;
         const method = now.method.choices[now.method.value];
         const lost = course.value(frame.lost_to_ties, "frame.lost_to_ties", "count");
         if (now.depth.choices[now.depth.value] !== "d16")

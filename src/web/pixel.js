@@ -298,7 +298,7 @@ pixel.sides = () => {
         rows.push(pixel.sideRow("gl", glFinal, ref));
     if (truth)
         rows.push(pixel.sideRow("truth", pixel.finalOf(truth), ref));
-    part.append(pixel.table("sides", ["", "R", "G", "B", "Coverage", "ULP from ref"], rows,
+    part.append(pixel.table("sides", ["Renderer", "R", "G", "B", "Coverage", "ULP from ref"], rows,
                             "Results beside each other"));
     const apart = gl && gl.map((value, i) => pixel.ulp(value, pixel.parse(pixel.history.accum[i])));
     part.append(app.element("p", { className: "note", textContent:

@@ -356,7 +356,7 @@ walk.peels = (parts = walk.PARTS, lines = walk.PEEL_CODE) => {
         for (const [part, make] of parts) {
             const made = make(k);
             if (made)
-                all.push(walk.step({ kind: "peel", group: `Peel ${k + 1} of ${app.frame.peels}`,
+                all.push(walk.step({ kind: "peel", group: `Peel ${k} (${k + 1} of ${app.frame.peels})`,
                                      peel: k, part, id: `peel-${k}-${part}`, lines, ...made }));
         }
     return all;

@@ -187,7 +187,8 @@ Expected.KINDS = [
         return letter && e.at(e.render("truth", {}), "final", pixel, e.channel(letter));
     },
     (e, what, pixel) => {
-        const [, letter] = what.match(/^side\.ref\.([rgba])$/) ?? [];
+        /* gl's are ref's on OSMesa: tests/cross/test_gl_ref. */
+        const [, letter] = what.match(/^side\.(?:ref|gl)\.([rgba])$/) ?? [];
         return letter && e.at(e.ref, "final", pixel, e.channel(letter));
     },
     (e, what) => {

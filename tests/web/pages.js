@@ -1,4 +1,6 @@
-/* Pages of peel explain in Debian's chromium, from disk: what the tests of pages share. */
+/* Pages of peel explain in Debian's chromium, from disk: what the tests of pages share.
+ *
+ * node pages.js: installs the packages that the tests need. */
 "use strict";
 
 const fs = require("node:fs");
@@ -15,12 +17,11 @@ function install() {
 }
 
 async function launch() {
-    install();
     const { chromium } = require("playwright-core");
     return chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox"] });
 }
 
-/* A page, once it is ready. page.problems: errors on its console, and requests that leave the disk;
+/* A page, once it is ready where it computes. page.problems: errors on its console, and requests that leave the disk;
  * context: of playwright's newContext. */
 async function open(browser, file, hash = "", context = {}) {
     const inside = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...context });
@@ -36,7 +37,8 @@ async function open(browser, file, hash = "", context = {}) {
             page.problems.push(`request: ${request.url()}`);
     });
     await page.goto(pathToFileURL(path.resolve(file)).href + hash);
-    await ready(page);
+    if (await page.locator("#data").count() > 0)
+        await ready(page);
     return page;
 }
 
@@ -93,4 +95,7 @@ function frame(program, side, scene, [width, height], settings, folder) {
     return figures;
 }
 
-module.exports = { launch, open, ready, close, numbers, frame, install };
+module.exports = { launch, open, ready, close, numbers, frame };
+
+if (require.main === module)
+    install();

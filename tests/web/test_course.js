@@ -14,6 +14,7 @@ const { launch, open, ready, close } = require("./pages.js");
 const [peel] = process.argv.slice(2);
 
 const MOST_BYTES = 15e6;
+const WAIT_MS = 30000;
 
 /* ---- what a reader does ---- */
 
@@ -62,9 +63,9 @@ const ANSWERS = [
          await choose(page, await find(page, `(i) => ${LAYERS} > 1 && ${PAINTER_RIGHT}`));
      }, null]],
     [[async (page) => link(page, "Set the passes"), /automatic/],
-     [(page) => slide(page, "#set-passes", 3), /never reached/],
-     [(page) => slide(page, "#set-passes", 11), /fewer will do/],
-     [(page) => slide(page, "#set-passes", 8), null]],
+     [(page) => slide(page, "#set-passes", 2), /never reached/],
+     [(page) => slide(page, "#set-passes", 7), /fewer will do/],
+     [(page) => slide(page, "#set-passes", 4), null]],
     [[async (page) => {}, /0.421875/],
      [async (page) => {
          await link(page, "Set their alpha");
@@ -98,7 +99,7 @@ async function slide(page, selector, value) {
 
 /* The page says so within a while; anything else is a failure. */
 async function says(page, right, pattern, where) {
-    const end = Date.now() + 10000;
+    const end = Date.now() + WAIT_MS;
     for (;;) {
         const [kind, text] = await page.locator("#lesson-verdict").evaluate((element) =>
             [element.className, element.textContent]);
@@ -121,7 +122,7 @@ async function testLinks(page, where) {
             (!step || app.steps[app.step].id === step) && (!view || app.view === view) &&
             (!method || app.settings.method.choices[app.settings.method.value] === method) &&
             (!focus || document.activeElement.id === focus),
-            ["step", "view", "method", "focus"].map((name) => wanted.get(name)), { timeout: 10000 })
+            ["step", "view", "method", "focus"].map((name) => wanted.get(name)), { timeout: WAIT_MS })
             .catch(() => assert.fail(`${where}: "${wanted}" leads nowhere`));
     }
 }

@@ -14,7 +14,7 @@ const { Expected, parseNumber } = require("./expected.js");
 const [peel, program, ...wanted] = process.argv.slice(2);
 
 const SIZE = [96, 54];
-const WAIT_MS = 5000; /* for a number that is late */
+const WAIT_MS = 20000; /* for a number that is late */
 
 /* ---- comparing ---- */
 
