@@ -57,9 +57,14 @@ static void put_page(FileWriter *page, const ExplainDesc *explain, const Text *d
     put(page, "<script>\napp.start();\n</script>\n</body>\n</html>\n");
 }
 
-static size_t page_size(const Text *data)
+/* An upper bound, by a few kilobytes. */
+static size_t page_size(const ExplainDesc *explain, const Text *data)
 {
-    size_t size = data->count + strlen(page_html);
+    enum {
+        MARKUP = 4096,   /* that put_page writes itself */
+        LONGEST_NAME = 6 /* of a character that html_text escapes */
+    };
+    size_t size = MARKUP + LONGEST_NAME * strlen(explain->name) + data->count + strlen(page_html);
     for (size_t i = 0; i < sizeof styles / sizeof styles[0]; i++)
         size += strlen(styles[i]);
     for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; i++)
@@ -119,11 +124,11 @@ Result report_explain_write(const ExplainDesc *explain, const char *dir, const c
     ExplainRoom room = {0};
     Result result = explain_data(explain, &data, &room);
     if (result == RESULT_OK)
-        result = check_size(explain, &room, page_size(&data));
+        result = check_size(explain, &room, page_size(explain, &data));
     if (result == RESULT_OK)
         result = write(explain, &data, dir, file);
     if (bytes)
-        *bytes = page_size(&data);
+        *bytes = page_size(explain, &data);
     text_free(&data);
     return result;
 }
