@@ -205,7 +205,9 @@ typedef struct PeelArithmeticInfo {
     const char *name; /* "separate-truncated" */
     const char *what; /* one line: the formula, or what is wrong with it */
     PeelArithmetic arithmetic;
-    bool wrong; /* a known mistake, there to be found */
+    bool wrong; /* a known mistake, there to be found, in every format. Where it is false, steps
+                 * of PEEL_PRECISION_HALF are still wrong in the formats that have more digits
+                 * than a half's 11: PEEL_RGBA16, PEEL_RGBA32F, PEEL_RG32F and PEEL_R32F */
 } PeelArithmeticInfo;
 
 /* The arithmetics with names: right ones, then wrong ones. */

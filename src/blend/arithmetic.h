@@ -93,12 +93,18 @@ typedef struct ArithmeticInfo {
     const char *name; /* "codes-shift", as the command line and files spell it */
     const char *what; /* one line: the formula, or what is wrong and where it comes from */
     Arithmetic arithmetic;
-    bool wrong; /* outside what the APIs' rules allow, or what nobody would want */
+    bool wrong; /* outside what the APIs' rules allow, or what nobody would want, in all formats;
+                 * see arithmetic_is_wrong */
 } ArithmeticInfo;
 
 /* All named ones: exact, driver, right ones, wrong ones. Static. */
 size_t arithmetic_count(void);
 const ArithmeticInfo *arithmetic_info(size_t i);
+
+/* Whether it is wrong in the format: wrong in all, or computed with fewer digits than the format's
+ * numbers have (halves have 11), which the APIs do not allow (Vulkan 1.3, Blending: "a precision
+ * and dynamic range no lower than that used to represent destination components"). */
+bool arithmetic_is_wrong(const ArithmeticInfo *info, PixelFormat format);
 
 /* A name, or comma-separated key=value of the fields (precision=float|half|double|codes,
  * rounding= and store=nearest|truncate|away|up, product=nearest|driver|floor|shift|shift-round|

@@ -1,8 +1,9 @@
 /* The named arithmetics, and arithmetics as text.
  *
- * Right is what the APIs allow: one rounding an operation, to nearest or toward zero, denormals
- * kept or flushed (OpenGL 4.6 core 2.3.4; Direct3D 11.3 3.1), and of integers what keeps 0 and 1
- * (OpenGL 4.6 core 2.3.5: the greatest code is 1 exactly) and is less than a code off. */
+ * Right is what the APIs allow: one rounding an operation, to nearest or toward zero (OpenGL says
+ * no more than how accurate it is), denormals kept or flushed (Direct3D flushes), and of integers
+ * what keeps 0 and 1 (glBlendFunc: converting codes "must leave the values 0 and 1 invariant")
+ * and is less than a code off. study/blend_rules.c has the sources. */
 #include "blend/arithmetic.h"
 
 #include <stdio.h>
@@ -18,43 +19,53 @@ static const ArithmeticInfo infos[] = {
      .arithmetic = {.kind = ARITHMETIC_EXACT}},
     {"driver", "Mesa 22.3's llvmpipe on a processor with FMA, as measured (NUMBERS.md)",
      .arithmetic = {.kind = ARITHMETIC_DRIVER, .fused = true}},
-    {"driver-unfused", "the same on a processor without FMA; other in r32f only",
+    {"driver-unfused",
+     "Mesa 22.3's llvmpipe on a processor without FMA: other than driver in r32f only",
      .arithmetic = {.kind = ARITHMETIC_DRIVER}},
 
     /* Floats. */
     {"separate", "float operations one by one, stored to nearest: C, GLSL precise, HLSL precise",
      STEPS(.fused = false)},
-    {"separate-truncated", "the same, stored toward zero: D3D11.3 3.2.3 allows it of halves",
+    {"separate-truncated",
+     "float operations one by one, stored toward zero: Direct3D from float to half",
      STEPS(.store = BLEND_TOWARD_ZERO)},
-    {"separate-flushed", "float operations with denormals as zeros, stored to nearest: D3D11.3 3.1",
+    {"separate-flushed", "float operations with denormals as zeros, stored to nearest: Direct3D",
      STEPS(.flush = true)},
-    {"separate-flushed-truncated", "the same, stored toward zero",
+    {"separate-flushed-truncated", "float operations with denormals as zeros, stored toward zero",
      STEPS(.flush = true, .store = BLEND_TOWARD_ZERO)},
-    {"fused", "as separate, the last product added in one rounding: what compilers contract to",
+    {"fused",
+     "float operations, the last product added in one rounding: what compilers contract to",
      STEPS(.fused = true)},
-    {"fused-truncated", "the same, stored toward zero",
+    {"fused-truncated",
+     "float operations, the last product added in one rounding, stored toward zero",
      STEPS(.fused = true, .store = BLEND_TOWARD_ZERO)},
-    {"fused-flushed", "as separate-flushed, the last product added in one rounding: GPU shaders",
+    {"fused-flushed",
+     "float operations with denormals as zeros, the last product added in one rounding: GPUs",
      STEPS(.fused = true, .flush = true)},
-    {"fused-flushed-truncated", "the same, stored toward zero",
+    {"fused-flushed-truncated",
+     "float operations, denormals as zeros, the last product fused, stored toward zero",
      STEPS(.fused = true, .flush = true, .store = BLEND_TOWARD_ZERO)},
-    {"source-stored", "as separate, the source rounded to the format first: a target read back",
+    {"source-stored", "the source rounded to the format, then float operations: a target read back",
      STEPS(.source_stored = true)},
-    {"source-stored-truncated", "the same, source and result stored toward zero",
+    {"source-stored-truncated",
+     "the source brought to the format toward zero, and the result: float operations between",
      STEPS(.source_stored = true, .store = BLEND_TOWARD_ZERO)},
-    {"away", "as separate, stored with ties away from zero: (int)(x*255 + 0.5)",
+    {"away", "float operations, stored with ties away from zero: (int)(x*255 + 0.5)",
      STEPS(.store = BLEND_NEAREST_AWAY)},
-    {"source-stored-away", "the same, the source so rounded first",
+    {"source-stored-away",
+     "source and result rounded to the format with ties away from zero: (int)(x*255 + 0.5)",
      STEPS(.source_stored = true, .store = BLEND_NEAREST_AWAY)},
     {"truncated", "every operation and the store toward zero: GL does not say which way",
      STEPS(.rounding = BLEND_TOWARD_ZERO, .store = BLEND_TOWARD_ZERO)},
     {"double", "double operations, stored to nearest: a careful software renderer",
      STEPS(.precision = PRECISION_DOUBLE)},
-    {"half", "half operations, each to nearest: mediump, rgba16f blending units",
+    {"half",
+     "half operations, each to nearest: mediump, rgba16f blending units; wrong in longer formats",
      STEPS(.precision = PRECISION_HALF)},
-    {"half-fused", "the same, the last product added in one rounding: half FMA",
+    {"half-fused",
+     "half operations, the last product added in one rounding: half FMA; wrong in longer formats",
      STEPS(.precision = PRECISION_HALF, .fused = true)},
-    {"half-truncated", "half operations, each toward zero",
+    {"half-truncated", "half operations, each toward zero; wrong in longer formats",
      STEPS(.precision = PRECISION_HALF, .rounding = BLEND_TOWARD_ZERO, .store = BLEND_TOWARD_ZERO)},
 
     /* Integers; formulas for 8 bits. */
@@ -63,9 +74,12 @@ static const ArithmeticInfo infos[] = {
      CODES(.product = CODES_NEAREST)},
     {"codes-driver", "t = ab; t += t >> 8; (t + 128) >> 8: llvmpipe's lp_build_mul_norm",
      CODES(.product = CODES_DRIVER)},
-    {"codes-floor", "ab / 255", CODES(.product = CODES_FLOOR)},
-    {"codes-shift-most", "(ab + 255) >> 8", CODES(.product = CODES_SHIFT_MOST)},
-    {"codes-shift-stretch", "a*(b + (b >> 7)) >> 8", CODES(.product = CODES_SHIFT_STRETCH)},
+    {"codes-floor", "ab / 255, the remainder dropped: integer division in C",
+     CODES(.product = CODES_FLOOR)},
+    {"codes-shift-most", "(ab + 255) >> 8: a shift for the division, upward",
+     CODES(.product = CODES_SHIFT_MOST)},
+    {"codes-shift-stretch", "a*(b + (b >> 7)) >> 8: b stretched so that 255 is 256",
+     CODES(.product = CODES_SHIFT_STRETCH)},
     {"codes-shift-plus", "a*(b + 1) >> 8, b the factor: Skia's SkAlphaMul",
      CODES(.product = CODES_SHIFT_PLUS)},
 
@@ -100,13 +114,13 @@ static const ArithmeticInfo infos[] = {
      "alpha >= 1 leaves out the destination, T <= 0 the source: NaN, infinity, alpha "
      "beyond 1",
      MISTAKE(MISTAKE_EARLY_OUT)},
-    {"early-out-254", "the same from 254/255 on, and up to 1/255", MISTAKE(MISTAKE_EARLY_OUT_254)},
+    {"early-out-254", "alpha >= 254/255 leaves out the destination, T <= 1/255 the source",
+     MISTAKE(MISTAKE_EARLY_OUT_254)},
     {"clamped-early", "the source clamped to [0, 1], though the format is float",
      MISTAKE(MISTAKE_CLAMPED_EARLY)},
-    {"clamped-late", "a unorm target's source not clamped before it is blended (GL 17.3.6)",
+    {"clamped-late", "a unorm target's source not clamped before it is blended: OpenGL clamps it",
      MISTAKE(MISTAKE_CLAMPED_LATE)},
-    {"nan-zero", "NaN stored as 0 in float formats: D3D11.3 3.1 keeps it",
-     MISTAKE(MISTAKE_NAN_ZERO)},
+    {"nan-zero", "NaN stored as 0 in float formats: Direct3D keeps it", MISTAKE(MISTAKE_NAN_ZERO)},
 
     /* Wrong: too few bits. */
     {"complement-codes", "1 - x computed in 8 bits, the rest in float",
@@ -116,7 +130,8 @@ static const ArithmeticInfo infos[] = {
     {"codes-wrap", "a sum beyond the greatest code wraps around", CODES_BUT(MISTAKE_WRAPS)},
     {"codes-eight-bits", "rgba16 blended in its upper 8 bits, times 257",
      CODES_BUT(MISTAKE_EIGHT_BITS)},
-    {"codes-eight-bits-shifted", "the same, shifted by 8 instead of times 257: white is 65280",
+    {"codes-eight-bits-shifted",
+     "rgba16 blended in its upper 8 bits, times 256 instead of 257: white is 65280",
      CODES_BUT(MISTAKE_EIGHT_BITS_SHIFTED)},
 };
 
@@ -132,6 +147,15 @@ size_t arithmetic_count(void)
 const ArithmeticInfo *arithmetic_info(size_t i)
 {
     return &infos[i];
+}
+
+bool arithmetic_is_wrong(const ArithmeticInfo *info, PixelFormat format)
+{
+    const FormatInfo *target = format_info(format);
+    bool halves =
+        info->arithmetic.kind == ARITHMETIC_STEPS && info->arithmetic.precision == PRECISION_HALF;
+    bool longer = target->kind == KIND_FLOAT || target->unorm_max >= 1u << 11;
+    return info->wrong || (halves && longer);
 }
 
 static const char *const precisions[] = {"float", "half", "double", "codes", NULL};

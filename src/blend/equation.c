@@ -95,13 +95,40 @@ static int find(const char *const *names, int count, const char *text, size_t le
 typedef struct Words {
     const char *const *names;
     int count, most;
-    const char *kind, *expected;
+    const char *kind;
 } Words;
 
-static const Words factor_words = {factor_names, FACTOR_COUNT, 4, "factor",
-                                   "an equation's name or a factor, such as src-alpha"};
-static const Words func_words = {func_names, BLEND_FUNC_COUNT, 2, "function",
-                                 "a function, such as max"};
+static const Words factor_words = {factor_names, FACTOR_COUNT, 4, "factor"};
+static const Words func_words = {func_names, BLEND_FUNC_COUNT, 2, "function"};
+
+enum {
+    NAMES_TEXT = 512
+};
+
+/* "zero, one or src-alpha". */
+static const char *list_names(const char *const *names, int count, char out[NAMES_TEXT])
+{
+    int at = 0;
+    for (int i = 0; i < count; i++)
+        at += snprintf(out + at, (size_t)(NAMES_TEXT - at), "%s%s",
+                       i == 0          ? ""
+                       : i < count - 1 ? ", "
+                                       : " or ",
+                       names[i]);
+    return out;
+}
+
+/* A text without commas that is neither a name nor a factor. */
+static Result fail_name(const char *text)
+{
+    const char *names[EQUATION_COUNT];
+    char list[NAMES_TEXT];
+    for (int i = 0; i < EQUATION_COUNT; i++)
+        names[i] = infos[i].name;
+    return result_fail(RESULT_BAD_INPUT,
+                       "equation: '%s': expected %s, or factors, such as one,one-minus-src-alpha",
+                       text, list_names(names, EQUATION_COUNT, list));
+}
 
 /* Comma-separated names of text[0..length) to their places in the table; *count: how many. */
 static Result parse_list(const char *text, size_t length, const Words *words, int out[4],
@@ -116,9 +143,11 @@ static Result parse_list(const char *text, size_t length, const Words *words, in
                                "equation: '%.*s': expected at most %d %ss, separated by commas",
                                (int)length, text, words->most, words->kind);
         out[*count] = find(words->names, words->count, at, part);
-        if (out[*count] < 0)
-            return result_fail(RESULT_BAD_INPUT, "equation: '%.*s': expected %s", (int)part, at,
-                               words->expected);
+        if (out[*count] < 0) {
+            char list[NAMES_TEXT];
+            return result_fail(RESULT_BAD_INPUT, "equation: '%.*s': expected a %s: %s", (int)part,
+                               at, words->kind, list_names(words->names, words->count, list));
+        }
         ++*count;
         if (!comma)
             return RESULT_OK;
@@ -135,6 +164,8 @@ Result equation_parse(const char *text, BlendEquation *out)
         }
     const char *colon = strchr(text, ':');
     size_t length = colon ? (size_t)(colon - text) : strlen(text);
+    if (!colon && !strchr(text, ',') && find(factor_names, FACTOR_COUNT, text, length) < 0)
+        return fail_name(text);
     int factors[4], funcs[4] = {BLEND_FUNC_ADD}, count, func_count = 1;
     Result result = parse_list(text, length, &factor_words, factors, &count);
     if (result == RESULT_OK && colon)

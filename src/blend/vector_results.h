@@ -13,9 +13,10 @@ Result vector_results_write(const char *path, VectorForm form, const VectorHeade
 /* SHA-256 of the operands (of each vector the source's four floats, then the destination's pixel;
  * of sequences the sources), and of the results of each of `count` arithmetics: raw pixels in the
  * vectors' order, of sequences the last one of each. All little-endian.
- * operands: VECTOR_DIGEST_TEXT bytes; results: count of them. With progress. */
+ * threads: as for pool_create; they change nothing but the time. operands: VECTOR_DIGEST_TEXT
+ * bytes; results: count of them. With progress. */
 Result vector_results_checksums(const VectorHeader *header, size_t count,
-                                const Arithmetic *const arithmetics[], char *operands,
+                                const Arithmetic *const arithmetics[], int threads, char *operands,
                                 char (*results)[VECTOR_DIGEST_TEXT]);
 
 #endif

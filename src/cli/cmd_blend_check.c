@@ -121,7 +121,7 @@ static error_t parse_set(const char *text, void *context)
 static error_t parse_equation(const char *text, BlendCheckCommand *command)
 {
     if (equation_parse(text, &command->equation) != RESULT_OK)
-        return options_error("--equation: %s", result_message());
+        return options_error("--%s", result_message());
     command->has_equation = true;
     return 0;
 }
@@ -328,7 +328,8 @@ static int sequences_code(const SequenceReport *report)
 {
     size_t best = sequence_report_best(report);
     if (best != SIZE_MAX)
-        return report->candidates[best].info->wrong ? EXIT_DIFFER : EXIT_AGREE;
+        return arithmetic_is_wrong(report->candidates[best].info, report->format) ? EXIT_DIFFER
+                                                                                  : EXIT_AGREE;
     return report->outside ? EXIT_DIFFER : EXIT_WARN;
 }
 

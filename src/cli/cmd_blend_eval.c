@@ -92,9 +92,6 @@ static error_t add_arithmetic(const char *name, EvalCommand *command)
     EvalNamed *named = &command->named[command->named_count];
     if (arithmetic_parse(name, &named->arithmetic) != RESULT_OK)
         return options_error("--%s", result_message());
-    for (size_t i = 0; i < arithmetic_count(); i++)
-        if (strcmp(name, arithmetic_info(i)->name) == 0)
-            named->wrong = arithmetic_info(i)->wrong;
     named->name = strdup(name);
     command->named_count += named->name != NULL;
     return named->name ? 0 : options_error("--arithmetic: out of memory");
@@ -241,6 +238,14 @@ static Result choose_colours(const EvalCommand *command, bool *multiply)
     return RESULT_OK;
 }
 
+static bool is_wrong(const char *name, PixelFormat format)
+{
+    for (size_t i = 0; i < arithmetic_count(); i++)
+        if (strcmp(name, arithmetic_info(i)->name) == 0)
+            return arithmetic_is_wrong(arithmetic_info(i), format);
+    return false;
+}
+
 /* The named arithmetics, without those that are not defined here, unless they were asked for. */
 static Result choose_arithmetics(EvalCommand *command)
 {
@@ -253,11 +258,13 @@ static Result choose_arithmetics(EvalCommand *command)
     if (command->named_count == 0 && add_arithmetic("exact", command))
         return result_fail(RESULT_NO_MEMORY, "--arithmetic: out of memory");
     for (size_t i = 0; i < command->named_count; i++) {
+        EvalNamed *named = &command->named[i];
         const char *refusal =
-            arithmetic_refuses(&command->named[i].arithmetic, &command->equation, command->format);
+            arithmetic_refuses(&named->arithmetic, &command->equation, command->format);
         if (refusal)
-            return result_fail(RESULT_UNSUPPORTED, "--arithmetic %s: %s: %s",
-                               command->named[i].name, format_info(command->format)->name, refusal);
+            return result_fail(RESULT_UNSUPPORTED, "--arithmetic %s: %s: %s", named->name,
+                               format_info(command->format)->name, refusal);
+        named->wrong = is_wrong(named->name, command->format);
     }
     return RESULT_OK;
 }

@@ -20,6 +20,7 @@ typedef struct VectorsCommand {
     Arithmetic arithmetic;
     const char *output, *arithmetic_name;
     VectorForm form;
+    int threads; /* 0: one per processor */
     bool has_set, has_format, has_form, has_equation, has_count;
     bool all, checksum, list;
 } VectorsCommand;
@@ -34,7 +35,8 @@ enum {
     KEY_FIRST,
     KEY_FORM,
     KEY_CHECKSUM,
-    KEY_LIST
+    KEY_LIST,
+    KEY_THREADS
 };
 
 static const struct argp_option vectors_options[] = {
@@ -56,10 +58,11 @@ static const struct argp_option vectors_options[] = {
     {"count", KEY_COUNT, "N", 0, "How many (default: the whole set; of random 65536)", 0},
     {"first", KEY_FIRST, "N", 0, "The index of the first (default 0)", 0},
     {"form", KEY_FORM, "FORM", 0,
-     "csv, jsonl or binary (default: by the ending of FILE, .csv, .jsonl or .bin; else csv)", 0},
+     "csv, jsonl or bin (default: by the ending of FILE, .csv, .jsonl or .bin; else csv)", 0},
     {"output", 'o', "FILE", 0, "Write to FILE (default, and -: standard output)", 0},
     {"checksum", KEY_CHECKSUM, 0, 0,
      "Instead of the vectors print the SHA-256 of the operands and of the results", 0},
+    {"threads", KEY_THREADS, "N", 0, "Of --checksum (default: one per processor)", 0},
     {"list", KEY_LIST, 0, 0, "Print the sets, equations and arithmetics, and end", 0},
     {0},
 };
@@ -95,15 +98,28 @@ static error_t set_format(const char *text, VectorsCommand *command)
                          text);
 }
 
+/* What names of files end in; without the dot they are names of the forms too. */
+static const struct {
+    const char *ending;
+    VectorForm form;
+} endings[] = {{".csv", VECTOR_CSV},
+               {".jsonl", VECTOR_JSON_LINES},
+               {".ndjson", VECTOR_JSON_LINES},
+               {".bin", VECTOR_BINARY}};
+enum {
+    ENDINGS = sizeof endings / sizeof *endings
+};
+
 static error_t set_form(const char *text, VectorsCommand *command)
 {
-    for (int i = 0; i < VECTOR_FORM_COUNT; i++)
-        if (strcmp(text, vector_form_name((VectorForm)i)) == 0) {
-            command->form = (VectorForm)i;
-            command->has_form = true;
+    command->has_form = true;
+    for (int i = 0; i < ENDINGS; i++)
+        if (strcmp(text, endings[i].ending + 1) == 0 ||
+            strcmp(text, vector_form_name(endings[i].form)) == 0) {
+            command->form = endings[i].form;
             return 0;
         }
-    return options_error("--form %s: expected csv, jsonl or binary", text);
+    return options_error("--form %s: expected csv, jsonl or bin", text);
 }
 
 static error_t set_number(const char *name, const char *text, uint64_t *out)
@@ -121,7 +137,7 @@ static error_t set_arithmetic(const char *text, VectorsCommand *command)
     command->arithmetic_name = text;
     if (command->all || arithmetic_parse(text, &command->arithmetic) == RESULT_OK)
         return 0;
-    return options_error("--arithmetic: %s", result_message());
+    return options_error("--%s", result_message());
 }
 
 static error_t set_equation(const char *text, VectorsCommand *command)
@@ -129,7 +145,7 @@ static error_t set_equation(const char *text, VectorsCommand *command)
     command->has_equation = true;
     return equation_parse(text, &command->header.equation) == RESULT_OK
                ? 0
-               : options_error("--equation: %s", result_message());
+               : options_error("--%s", result_message());
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -156,6 +172,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case 'o':
         command->output = argument;
         return 0;
+    case KEY_THREADS:
+        return options_count("--threads", argument, 1, THREADS_MAX, &command->threads);
     case KEY_CHECKSUM:
         command->checksum = true;
         return 0;
@@ -236,17 +254,10 @@ static Result choose_equation(VectorsCommand *command)
 
 static Result choose_form(VectorsCommand *command)
 {
-    static const struct {
-        const char *ending;
-        VectorForm form;
-    } endings[] = {{".csv", VECTOR_CSV},
-                   {".jsonl", VECTOR_JSON_LINES},
-                   {".ndjson", VECTOR_JSON_LINES},
-                   {".bin", VECTOR_BINARY}};
     const char *output = command->output;
     if (command->has_form || strcmp(output, "-") == 0 || strncmp(output, "/dev/", 5) == 0)
         return RESULT_OK;
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+    for (int i = 0; i < ENDINGS; i++)
         if (options_has_extension(output, endings[i].ending)) {
             command->form = endings[i].form;
             return RESULT_OK;
@@ -275,11 +286,15 @@ static Result choose(VectorsCommand *command)
         result = result_fail(RESULT_BAD_INPUT, "--arithmetic all: expected --checksum");
     if (result == RESULT_OK && command->checksum && strcmp(command->output, "-") != 0)
         result = result_fail(RESULT_BAD_INPUT, "--checksum: expected no -o, it prints");
+    if (result == RESULT_OK && command->checksum && command->has_form)
+        result = result_fail(RESULT_BAD_INPUT, "--checksum: expected no --form, it prints");
+    if (result == RESULT_OK && command->threads && !command->checksum)
+        result = result_fail(RESULT_BAD_INPUT, "--threads: expected --checksum");
     if (result == RESULT_OK && !command->checksum)
         result = choose_form(command);
     if (result == RESULT_OK && !command->checksum && command->form == VECTOR_BINARY &&
         strcmp(command->output, "-") == 0 && isatty(STDOUT_FILENO))
-        result = result_fail(RESULT_BAD_INPUT, "--form binary: expected -o FILE, or a pipe");
+        result = result_fail(RESULT_BAD_INPUT, "--form bin: expected -o FILE, or a pipe");
     return result;
 }
 
@@ -334,7 +349,8 @@ static Result print_checksums(const VectorsCommand *command)
         names[count++] = command->arithmetic_name;
     }
     if (result == RESULT_OK)
-        result = vector_results_checksums(header, count, arithmetics, operands, sums);
+        result =
+            vector_results_checksums(header, count, arithmetics, command->threads, operands, sums);
     if (result == RESULT_OK)
         printf("%s  operands\n", operands);
     for (size_t i = 0; i < count && result == RESULT_OK; i++)

@@ -166,14 +166,14 @@ ALWAYS_INLINE float float_channel(bool flush, bool fused, const Part *part, floa
         return complement_sum(flush, fused, part, s, d, f, g);
     if (part->linked && part->source == part->destination) { /* (s ± d)·f */
         float sum = combine(flush, part->func, s, d);
-        return part->source_none ? 0.0f : part->source_one ? sum : mul(flush, sum, f);
+        return part->source_none ? 0.0f : part->source_one ? op_kept(sum) : mul(flush, sum, f);
     }
-    float p = part->source_none ? 0.0f : part->source_one ? s : mul(flush, s, f);
-    float q = part->destination_none ? 0.0f : part->destination_one ? d : mul(flush, d, g);
+    float p = part->source_none ? 0.0f : part->source_one ? op_kept(s) : mul(flush, s, f);
+    float q = part->destination_none ? 0.0f : part->destination_one ? op_kept(d) : mul(flush, d, g);
     if (part->destination_none && part->func != BLEND_FUNC_REVERSE_SUBTRACT)
-        return p;
+        return op_kept(p);
     if (part->source_none && part->func != BLEND_FUNC_SUBTRACT)
-        return q;
+        return op_kept(q);
     return combine(flush, part->func, p, q);
 }
 

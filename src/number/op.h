@@ -342,6 +342,17 @@ static inline float op_pow(bool fused, float x, float y)
     return x != x || op_flush(x) == 0.0f ? 0.0f : op_exp2(fused, op_mul(op_log2(fused, x), y));
 }
 
+/* x, untouched by any operation. clang makes `which ? x : x·y` into x·(which ? 1 : y), and sums
+ * likewise with −0, which is right only where denormals are not flushed: an x that must be kept is
+ * passed through here. */
+static inline float op_kept(float x)
+{
+#if OP_HARDWARE_FLUSH && defined(__clang__)
+    __asm__("" : "+x"(x));
+#endif
+    return x;
+}
+
 /* The one NaN that we store, whatever bits the processor made. */
 static inline float op_canonical(float x)
 {

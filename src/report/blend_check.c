@@ -84,7 +84,7 @@ static void print_row(const BlendReport *report, const BlendCandidate *one, FILE
         fprintf(out, "\n%28s", "");
     print_tally(report->format, &one->groups[GROUP_COLOR], out);
     print_tally(report->format, &one->groups[GROUP_ALPHA], out);
-    if (one->info && one->info->wrong)
+    if (one->info && arithmetic_is_wrong(one->info, report->format))
         fputs("  wrong", out);
     if (one->vectors < report->vectors)
         fprintf(out, "  in %s", summary_count(one->vectors, count));
@@ -190,20 +190,17 @@ static Result print_twins(const BlendReport *report, size_t best, FILE *out)
     Result result = blend_twins(report, best, &twins, &count);
     for (size_t i = 0; i < count && result == RESULT_OK; i++) {
         const BlendExample *example = &twins[i].example;
-        fprintf(out, "%s %s", i ? "" : "The same on these vectors:\n ",
+        fprintf(out, "%s  %s", i ? "" : "The same on these vectors:\n",
                 report->candidates[twins[i].candidate].name);
         if (!twins[i].apart) {
             fputs(": and on all that were looked at\n", out);
             continue;
         }
-        fprintf(out, ": not on %s vector %llu, %s: ", vectors_set_name(example->set),
+        fprintf(out, ": not on %s vector %llu, %s:\n      ", vectors_set_name(example->set),
                 (unsigned long long)example->index, blend_channel_name(example->channel));
-        fputs("\n      ", out);
         blend_print_operands(&report->equation, report->format, example, true, out);
         fprintf(out, "; gives %s", blend_text_bits(report->format, example->got, text));
         fprintf(out, ", not %s\n", blend_text_bits(report->format, example->expected, text));
-        if (i + 1 < count)
-            fputc(' ', out);
     }
     free(twins);
     return result;

@@ -28,7 +28,8 @@ static json_t *candidate_of(Document *json, const BlendReport *report, const Ble
                                            &one->arithmetic, &one->worst[i]));
     document_put(json, object, "name", document_string(one->name));
     document_put(json, object, "named", json_boolean(one->info != NULL));
-    document_put(json, object, "wrong", json_boolean(one->info && one->info->wrong));
+    document_put(json, object, "wrong",
+                 json_boolean(one->info && arithmetic_is_wrong(one->info, report->format)));
     document_put(json, object, "refused",
                  one->refused ? document_string(one->refused) : json_null());
     document_put(json, object, "vectors", document_count(one->vectors));
@@ -42,7 +43,17 @@ static json_t *candidate_of(Document *json, const BlendReport *report, const Ble
     return object;
 }
 
-static json_t *rule_of(Document *json, const BlendRuleTally *rule)
+/* The value farthest outside, or else with the largest error. */
+static json_t *largest_of(Document *json, PixelFormat format, const BlendRuleTally *rule)
+{
+    json_t *object = blend_json_operands(json, format, rule->set, rule->index, rule->channel,
+                                         rule->source, rule->pixel);
+    document_put(json, object, "exact", document_real(rule->exact));
+    document_put(json, object, "got", blend_json_bits(format, rule->got));
+    return object;
+}
+
+static json_t *rule_of(Document *json, PixelFormat format, const BlendRuleTally *rule)
 {
     json_t *object = json_object();
     document_put(json, object, "rule", document_string(rule->info->name));
@@ -54,6 +65,8 @@ static json_t *rule_of(Document *json, const BlendRuleTally *rule)
     document_put(json, object, "outside", document_count(rule->outside));
     document_put(json, object, "largest_units", document_real(rule->largest));
     document_put(json, object, "largest", document_real(rule->largest_real));
+    document_put(json, object, "example",
+                 rule->has_example ? largest_of(json, format, rule) : json_null());
     return object;
 }
 
@@ -74,7 +87,7 @@ static json_t *report_of(Document *json, const ReportBlend *blend)
         document_append(json, candidates, candidate_of(json, report, &report->candidates[i]));
     for (int i = 0; i < BLEND_RULES; i++)
         if (report->rules[i].applies)
-            document_append(json, rules, rule_of(json, &report->rules[i]));
+            document_append(json, rules, rule_of(json, report->format, &report->rules[i]));
     document_put(json, object, "format", document_string(format_info(report->format)->name));
     document_put(json, object, "equation", document_string(equation));
     document_put(json, object, "vectors", document_count(report->vectors));
@@ -85,6 +98,10 @@ static json_t *report_of(Document *json, const ReportBlend *blend)
     document_put(json, object, "unexplained", document_count(blend_unexplained(report)));
     document_put(json, object, "verdict",
                  document_string(blend_verdict_name(blend_verdict(report, blend->api))));
+    document_put(json, object, "against",
+                 report->has_against ? document_string(report->candidates[0].name) : json_null());
+    document_put(json, object, "api",
+                 document_string(blend->api < API_COUNT ? blend_api_name(blend->api) : "any"));
     document_put(json, object, "arithmetics", candidates);
     document_put(json, object, "rules", rules);
     return object;
@@ -126,7 +143,8 @@ Result report_blend_sequences_json(const SequenceReport *report, const char *sub
         const SequenceCandidate *one = &report->candidates[i];
         json_t *object = json_object();
         document_put(&json, object, "name", document_string(one->info->name));
-        document_put(&json, object, "wrong", json_boolean(one->info->wrong));
+        document_put(&json, object, "wrong",
+                     json_boolean(arithmetic_is_wrong(one->info, report->format)));
         document_put(&json, object, "values", document_count(one->values));
         document_put(&json, object, "differing", document_count(one->differing));
         document_put(&json, object, "max_ulp", ulp_of(one->max_ulp));
@@ -151,10 +169,15 @@ Result report_blend_list_json(const BlendWrongList *list, const char *path)
     json_t *root = json_object(), *all = json_array(), *rows = json_array();
     for (size_t i = 0; i < arithmetic_count(); i++) {
         const ArithmeticInfo *info = arithmetic_info(i);
-        json_t *object = json_object();
+        json_t *object = json_object(), *wrong_in = json_array();
+        for (int k = 0; k < BLEND_FORMATS; k++)
+            if (arithmetic_is_wrong(info, blend_formats[k]))
+                document_append(&json, wrong_in,
+                                document_string(format_info(blend_formats[k])->name));
         document_put(&json, object, "name", document_string(info->name));
         document_put(&json, object, "what", document_string(info->what));
         document_put(&json, object, "wrong", json_boolean(info->wrong));
+        document_put(&json, object, "wrong_in", wrong_in);
         document_append(&json, all, object);
     }
     for (size_t i = 0; i < list->count; i++) {

@@ -139,28 +139,35 @@ static json_t *json_number(double x)
     return json_string(text_hex(x, text));
 }
 
-static json_t *json_bits(PixelFormat format, uint32_t bits)
+json_t *blend_json_bits(PixelFormat format, uint32_t bits)
 {
     return format_info(format)->unorm_max ? json_integer(bits)
                                           : json_number(blend_case_value(format, bits));
 }
 
-json_t *blend_json_example(Document *json, const BlendEquation *equation, PixelFormat format,
-                           const Arithmetic *arithmetic, const BlendExample *example)
+json_t *blend_json_operands(Document *json, PixelFormat format, VectorSet set, uint64_t index,
+                            int channel, const float from[4], const void *pixel)
 {
     json_t *object = json_object(), *source = json_array(), *destination = json_array();
     for (int i = 0; i < 4; i++)
-        document_append(json, source, json_number((double)example->source[i]));
+        document_append(json, source, json_number((double)from[i]));
     for (int i = 0; i < format_info(format)->channels; i++)
-        document_append(json, destination,
-                        json_bits(format, format_bits(format, example->pixel, i)));
-    document_put(json, object, "set", json_string(vectors_set_name(example->set)));
-    document_put(json, object, "index", document_count(example->index));
-    document_put(json, object, "channel", json_string(blend_channel_name(example->channel)));
+        document_append(json, destination, blend_json_bits(format, format_bits(format, pixel, i)));
+    document_put(json, object, "set", json_string(vectors_set_name(set)));
+    document_put(json, object, "index", document_count(index));
+    document_put(json, object, "channel", json_string(blend_channel_name(channel)));
     document_put(json, object, "source", source);
     document_put(json, object, "destination", destination);
-    document_put(json, object, "expected", json_bits(format, example->expected));
-    document_put(json, object, "got", json_bits(format, example->got));
+    return object;
+}
+
+json_t *blend_json_example(Document *json, const BlendEquation *equation, PixelFormat format,
+                           const Arithmetic *arithmetic, const BlendExample *example)
+{
+    json_t *object = blend_json_operands(json, format, example->set, example->index,
+                                         example->channel, example->source, example->pixel);
+    document_put(json, object, "expected", blend_json_bits(format, example->expected));
+    document_put(json, object, "got", blend_json_bits(format, example->got));
     document_put(json, object, "ulp",
                  example->ulp == UINT32_MAX ? json_null() : document_count(example->ulp));
     if (!arithmetic)
@@ -177,7 +184,7 @@ json_t *blend_json_example(Document *json, const BlendEquation *equation, PixelF
     document_put(json, steps, "destination_factor", json_number(one->destination_factor));
     document_put(json, steps, "destination_product", json_number(one->destination_product));
     document_put(json, steps, "sum", json_number(one->sum));
-    document_put(json, steps, "stored", json_bits(format, one->stored));
+    document_put(json, steps, "stored", blend_json_bits(format, one->stored));
     document_put(json, object, "steps", steps);
     return object;
 }

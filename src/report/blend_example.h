@@ -30,6 +30,12 @@ void blend_print_operands(const BlendEquation *equation, PixelFormat format,
 void blend_print_example(const BlendReport *report, const char *name, const Arithmetic *arithmetic,
                          const BlendExample *example, FILE *out);
 
+/* A vector's place in its set, and its operands: hexadecimal floats as strings, codes as integers.
+ */
+json_t *blend_json_operands(Document *json, PixelFormat format, VectorSet set, uint64_t index,
+                            int channel, const float from[4], const void *pixel);
+json_t *blend_json_bits(PixelFormat format, uint32_t bits); /* stored bits, likewise */
+/* The operands, what is expected and found, and the steps of an arithmetic that is not NULL. */
 json_t *blend_json_example(Document *json, const BlendEquation *equation, PixelFormat format,
                            const Arithmetic *arithmetic, const BlendExample *example);
 

@@ -39,7 +39,7 @@ void report_blend_sequences(const SequenceReport *report, const char *subject, F
         fprintf(out, "%c %-26s %13s %13s %12s%s\n", one->differing ? ' ' : '=', one->info->name,
                 summary_count(one->values, a), summary_count(one->differing, b),
                 one->differing ? blend_text_ulp(report->format, one->max_ulp, most) : "",
-                one->info->wrong ? "  wrong" : "");
+                arithmetic_is_wrong(one->info, report->format) ? "  wrong" : "");
     }
     fprintf(out,
             "\ninside the bound of any sane arithmetic: %s of %s values; correctly rounded: %s\n",
@@ -53,7 +53,9 @@ void report_blend_sequences(const SequenceReport *report, const char *subject, F
                 report->outside ? "and OUTSIDE" : "but inside");
     else
         fprintf(out, "verdict: %s: %s\n", report->candidates[best].info->name,
-                report->candidates[best].info->wrong ? "a WRONG arithmetic" : "a right arithmetic");
+                arithmetic_is_wrong(report->candidates[best].info, report->format)
+                    ? "a WRONG arithmetic"
+                    : "a right arithmetic");
 }
 
 static void print_vector(const BlendWrong *row, FILE *out)
@@ -86,6 +88,27 @@ static void print_simplest(const BlendWrongList *list, const ArithmeticInfo *inf
     }
 }
 
+/* "; wrong in rgba16, rgba32f" where it is not wrong in all formats. */
+static void print_info(const ArithmeticInfo *info, FILE *out)
+{
+    fprintf(out, "  %s\n      %s\n", info->name, info->what);
+    int count = 0;
+    for (int i = 0; i < BLEND_FORMATS && !info->wrong; i++)
+        if (arithmetic_is_wrong(info, blend_formats[i]))
+            fprintf(out, "%s%s", count++ ? ", " : "      wrong in ",
+                    format_info(blend_formats[i])->name);
+    if (count)
+        fputc('\n', out);
+}
+
+static bool is_listed(const BlendWrongList *list, const ArithmeticInfo *info)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (list->rows[i].info == info)
+            return true;
+    return info->wrong;
+}
+
 void report_blend_list(const BlendWrongList *list, bool every, FILE *out)
 {
     for (int wrong = 0; wrong < 2; wrong++) {
@@ -96,9 +119,9 @@ void report_blend_list(const BlendWrongList *list, bool every, FILE *out)
               out);
         for (size_t i = 0; i < arithmetic_count(); i++) {
             const ArithmeticInfo *info = arithmetic_info(i);
-            if (info->wrong != (wrong == 1))
+            if (wrong ? !is_listed(list, info) : info->wrong)
                 continue;
-            fprintf(out, "  %s\n      %s\n", info->name, info->what);
+            print_info(info, out);
             if (wrong && !every)
                 print_simplest(list, info, out);
             for (size_t k = 0; k < list->count && wrong && every; k++)

@@ -12,7 +12,7 @@ enum {
     CHUNK = 4096,   /* vectors that a task takes at a time */
     RULE_PARTS = 8, /* tasks for the rules */
     STEP = 64,      /* vectors between looks whether an arithmetic without a name still fits */
-    FIRST = 256,   /* vectors after which most arithmetics without a name are out */
+    FIRST = 256,    /* vectors after which most arithmetics without a name are out */
     FITS = 8,       /* arithmetics without a name that are kept after that: the simplest */
     /* An arithmetic that differs in a sixteenth of all values after so many vectors is no
      * candidate any more. */
@@ -297,7 +297,7 @@ static void stop_others(BlendReport *report)
 {
     size_t best = blend_best_whole(report);
     const ArithmeticInfo *info = report->candidates[best].info;
-    if (!info || info->wrong || blend_unexplained(report) > 0)
+    if (!info || arithmetic_is_wrong(info, report->format) || blend_unexplained(report) > 0)
         return;
     for (size_t i = 0; i < report->count; i++) {
         BlendCandidate *one = &report->candidates[i];

@@ -1,18 +1,20 @@
-/* Sources.
- * OpenGL 4.6 core: 2.3.4 (results accurate to about 1 part in 10^5; infinities and NaN optional),
- * 2.3.5.2 (a float becomes one of the two closest codes), 17.3.6 (computed with precision and
- * dynamic range no lower than that of the destination's components).
- * Vulkan 1.3: chapter "The Framebuffer", Blending (the same words); "Fundamentals", conversion to
- * normalized fixed-point (one of the two closest values, nearest preferred).
- * Direct3D 11.3 functional specification: 3.1.3.1 (add, subtract and multiply within 0.5 ULP of
- * float), 3.1.3.2 (fused operations no less accurate than the worst order of single ones; denormal
- * floats are flushed), 3.1.5 (halves 0.6 ULP where fused, denormals kept), 3.2.2 (toward zero from
- * float to half), 3.2.3.6 (0.6 ULP from float to UNORM), 17.5 (blending obeys 3.1; precision at
- * least the target's, up to float; NaN propagates even through a factor of 0).
- * WebGPU conformance tests: api/operation/rendering/color_target_state.spec.ts (rgba16float, an
- * absolute 0.003). The WebGPU specification has no number.
- * dEQP, in VK-GL-CTS: vktPipelineBlendTests.cpp (4 codes, 0.005 for halves, 1e-5 for floats);
- * es3fBlendTests.cpp (4 codes of RGBA8: 1 · 5 / 2 + 2 in integers).
+/* Sources. Where a specification was not to be had, what its words were read in is in brackets.
+ * OpenGL 4.6 core: 2.3.4, results accurate to about 1 part in 10^5, infinities and NaN permitted
+ * but not required [4.2 compatibility profile, 2.1.1]; 2.3.5.2, a float becomes one of the two
+ * closest codes, the nearest preferred [OpenGL ES 3.0.3, 2.1.6]; 17.3.6, computed as if in floating
+ * point, with precision and dynamic range no lower than that of the destination's components
+ * [OpenGL ES 3.2, reference page of glBlendFunc]. Vulkan 1.3: chapter "The Framebuffer", Blending:
+ * the same words as OpenGL's. To store is taken to be as in OpenGL. Direct3D 11: "Floating-point
+ * rules": float addition, subtraction and multiplication within 0.5 ULP, denormals flushed, NaN and
+ * anything is NaN (but for minimum and maximum). (It also allows to truncate, which it says is 0.5
+ * ULP; it is 1, and the number is what counts here.) "Data conversion rules": toward zero from
+ * float to half; D3D11_FLOAT32_TO_INTEGER_TOLERANCE_IN_ULP, 0.6, from float to UNORM;
+ * D3D10_1_FLOAT16_FUSED_TOLERANCE_IN_ULP, 0.6. That blending keeps these rules, in at least the
+ * target's precision, is section 17.5 of the 11.3 functional specification, whose text we have not;
+ * its sections 3.1 and 3.2 are the two pages above. WebGPU conformance tests:
+ * api/operation/rendering/color_target_state.spec.ts (rgba16float, an absolute 0.003). The WebGPU
+ * specification has no number. dEQP, in VK-GL-CTS: vktPipelineBlendTests.cpp (4 codes, 0.005 for
+ * halves, 1e-5 for floats); es3fBlendTests.cpp (4 codes of RGBA8: 1 · 5 / 2 + 2 in integers).
  * piglit: tests/general/blendminmax and gl-1.0-blend-func, piglit_set_tolerance_for_bits
  * (3 / 2^bits, bits at most 8). */
 #include "study/blend_rules.h"
@@ -93,10 +95,13 @@ void blend_rules_start(PixelFormat format, BlendRuleTally *out)
 
 /* ---- the exact result, and how far a way may be off ------------------------------------------ */
 
+/* The unit in the last place of x, and that of the denormals at 0. */
 static double exponent_unit(double x, int bits, int least)
 {
     int exponent;
     frexp(x, &exponent); /* |x| in [2^(exponent − 1), 2^exponent) */
+    if (x == 0.0)
+        return ldexp(1.0, least);
     exponent -= bits;
     return ldexp(1.0, exponent > least ? exponent : least);
 }

@@ -96,8 +96,8 @@ size_t sequence_report_best(const SequenceReport *report)
     for (size_t i = report->count; i-- > 0;) {
         const SequenceCandidate *one = &report->candidates[i];
         bool gives_all = !one->refused && one->values > 0 && one->differing == 0;
-        if (gives_all &&
-            (best == SIZE_MAX || !one->info->wrong || report->candidates[best].info->wrong))
+        if (gives_all && (best == SIZE_MAX || !arithmetic_is_wrong(one->info, report->format) ||
+                          arithmetic_is_wrong(report->candidates[best].info, report->format)))
             best = i;
     }
     return best;

@@ -49,7 +49,7 @@ static int rank(const BlendReport *report, const BlendCandidate *one, unsigned g
 {
     if (one->vectors != report->vectors || differing(one, groups) > 0)
         return 3;
-    return !one->info ? 2 : one->info->wrong;
+    return !one->info ? 2 : arithmetic_is_wrong(one->info, report->format);
 }
 
 static size_t best(const BlendReport *report, unsigned groups)

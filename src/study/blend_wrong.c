@@ -26,7 +26,8 @@ static Result make_right(const BlendProbe *probe, Right *out)
     *out = (Right){memory_array(arithmetic_count(), sizeof *out->pixels), 0};
     for (size_t i = 0; i < arithmetic_count() && out->pixels; i++) {
         const ArithmeticInfo *info = arithmetic_info(i);
-        if (info->wrong || arithmetic_refuses(&info->arithmetic, &probe->equation, probe->format))
+        if (arithmetic_is_wrong(info, probe->format) ||
+            arithmetic_refuses(&info->arithmetic, &probe->equation, probe->format))
             continue;
         unsigned char *pixels = blend_probe_blend(probe, &info->arithmetic);
         if (!pixels)
@@ -62,7 +63,8 @@ static Result add_pair(PixelFormat format, EquationId equation, size_t effort, B
         result = make_right(&probe, &right);
     for (size_t i = 0; i < arithmetic_count() && result == RESULT_OK; i++) {
         const ArithmeticInfo *info = arithmetic_info(i);
-        if (!info->wrong || arithmetic_refuses(&info->arithmetic, &probe.equation, format))
+        if (!arithmetic_is_wrong(info, format) ||
+            arithmetic_refuses(&info->arithmetic, &probe.equation, format))
             continue;
         BlendWrong *row = &out->rows[out->count++];
         *row = (BlendWrong){.info = info, .format = format, .equation = equation};

@@ -109,7 +109,7 @@ course.frame = async () => {
     return frame;
 };
 
-/* The figures of what the reader sees: the live view's picture may be larger than the traced frame. */
+/* The figures of what the reader sees: the live view's picture may be the larger one. */
 course.figures = async () => app.view === "live" && live.frame ? live.frame : app.frame;
 
 /* What a frame stored at a pixel. */

@@ -62,6 +62,11 @@ has 'a right arithmetic' '^= codes-nearest'
 has 'a right arithmetic' '^verdict: a right arithmetic, all values$'
 has 'a right arithmetic' '4,000 vectors, 16,000 values'
 has 'a right arithmetic' '^Direct3D .* none$'
+has 'a right arithmetic' '^The same on these vectors:$'
+has 'a right arithmetic' '^  source-stored'
+cp output whole
+exits 1 'all indented as the first' grep -q -E '^ [a-z]|: $' whole
+cp whole output
 narrow 'a right arithmetic'
 json 'a right arithmetic' 'd.exit_code === 0 && d.reports[0].unexplained === 0'
 json 'a right arithmetic' 'd.reports[0].verdict === "named" && d.reports[0].values === 16000'
@@ -107,7 +112,10 @@ has 'another' '^Farthest from codes-floor:'
 make truncated.csv --set random --format rgba8 --count 2000 --arithmetic rounding=up,store=truncate
 exits 1 'any API' "$peel" blend check truncated.csv
 exits 1 'OpenGL' "$peel" blend check truncated.csv --api gl
-exits 2 'Direct3D' "$peel" blend check truncated.csv --api d3d11
+exits 2 'Direct3D' "$peel" blend check truncated.csv --api d3d11 --against exact --json out.json
+json 'Direct3D' 'd.reports[0].api === "d3d11" && d.reports[0].against === "exact"'
+json 'Direct3D' 'd.reports[0].rules.every(r => r.judged === 0 || r.example !== null)'
+json 'Direct3D' 'Number.isInteger(d.reports[0].rules.find(r => r.example).example.got)'
 
 # ---- sequences
 

@@ -41,9 +41,8 @@ same 'row 3' "$(sed -n 13p four.csv)" \
     '3,0x0p+0,0x1.818182p-7,0x1p+0,0x1.818182p-7,3,0,252,0,3,0,252,0'
 
 # The same in all forms, to a file and to standard output.
-for form in csv jsonl binary; do
-    ending=$form
-    [ $form = binary ] && ending=bin
+for form in csv jsonl bin binary; do
+    ending=${form%ary}
     exits 0 "$form" "$peel" blend vectors --set random --count 100 --format rgba16f -o out.$ending
     vectors --set random --count 100 --format rgba16f --form $form >piped
     exits 0 "$form: piped" cmp piped out.$ending
@@ -64,13 +63,15 @@ if [ "$(vectors --set random --seed 7 --count 50 --checksum)" = \
 fi
 
 # Checksums are of the raw bytes of the binary form: 16 of source, 4 of destination, 4 of result.
-vectors --set random --count 300 --form binary --arithmetic driver | tail -c +297 |
+vectors --set random --count 300 --form bin --arithmetic driver | tail -c +297 |
     head -c 7200 | od -An -v -tx1 -w24 | cut -c 61-72 | tr -d ' \n' >hex
 sum=$(sed 's/../\\x&/g' hex | xargs -0 printf '%b' | sha256sum | cut -c 1-64)
 vectors --set random --count 300 --checksum --arithmetic all >all
 same 'a checksum' "$(sed -n 's/  driver$//p' all)" "$sum"
 same 'checksum alone' "$(vectors --set random --count 300 --checksum --arithmetic driver |
     sed -n 2p)" "$sum  driver"
+same 'checksums and threads' "$(vectors --set random --count 70000 --checksum --threads 1)" \
+    "$(vectors --set random --count 70000 --checksum --threads 3)"
 exits 0 'wrong ones are among them' grep -q ' factors-swapped$' all
 
 # Sequences.
@@ -89,7 +90,7 @@ exits 0 'help says how checksums are used' grep -q 'sha256sum results.bin' help
 
 refused "--set all: expected exhaustive, directed, random or sequences" --set all
 refused "--format rgb: expected rgba8" --format rgb
-refused "--form xml: expected csv, jsonl or binary" --form xml
+refused "--form xml: expected csv, jsonl or bin" --form xml
 refused "--seed -1: expected an integer from 0 to 2^53 - 1" --seed -1
 refused "--count x: expected an integer" --count x
 refused "--count 0: expected at least 1" --count 0
@@ -99,11 +100,15 @@ refused "the set has 16777216 vectors" --first 16777000 --count 1000
 refused "exhaustive vectors of rgba32f: expected rgba8 or rgba16" --set exhaustive --format rgba32f
 refused "sequences of rg32f: expected a format with alpha" --set sequences --format rg32f
 refused "--set sequences: expected --equation under" --set sequences --equation over
-refused "--equation" --equation sideways
-refused "--arithmetic" --arithmetic sideways
+refused "peel: --equation: 'sideways': expected under, over, " --equation sideways
+refused "peel: --equation: 'GL_ONE': expected a factor: zero, one, " --equation one,GL_ONE
+refused "peel: --arithmetic: 'sideways': expected a name, or " --arithmetic sideways
+refused "--threads 0: expected " --checksum --threads 0
 refused "--arithmetic codes-nearest: " --format rgba32f --arithmetic codes-nearest
 refused "--arithmetic all: expected --checksum" --arithmetic all
 refused "--checksum: expected no -o" --checksum -o out.csv
+refused "--checksum: expected no --form" --checksum --form csv
+refused "--threads: expected --checksum" --threads 2
 refused "-o out.txt: expected a name ending in .csv, .jsonl or .bin, or --form" -o out.txt
 refused "seed or index above 2^53 - 1" --set random --first 9007199254740991 --count 2
 refused "'stray': expected no arguments" stray

@@ -55,6 +55,9 @@ exits 0 'a name with markup: bits' node "$source/tests/cli/explain.js" "$source"
 exits 0 'a name with markup: title' grep -q '<title>it&#39;s &lt;script&gt;&amp;' "<b>/index.html"
 
 refused 'no output' '-o DIR' tutorial
+refused 'a course of no folder' '-o DIR' --course
+refused 'a course of a scene' 'built in' --course tutorial -o course
+refused 'a course below a file' 'out/index.html' --course -o out/index.html/sub
 refused 'no scene' 'scene' -o out
 refused 'all methods' '--method all' tutorial -o out --method all
 refused 'below a file' 'out/index.html' tutorial -o out/index.html/sub

@@ -3,6 +3,7 @@
 #include "paths.h"
 
 #include "base/memory.h"
+#include "frame/shading.h"
 #include "number/op.h"
 
 #include <stdio.h>
@@ -122,6 +123,46 @@ START_TEST(test_raw_test_stores_the_far_end)
 }
 END_TEST
 
+/* Stored alphas on both sides of SHADING_ALPHA_TEST side by side, on squares that fill whole
+ * blocks: what the test discards must not be blended, small as it is. */
+START_TEST(test_alpha_test_in_whole_blocks)
+{
+    static Soup soup;
+    Random random = random_seed(1);
+    soup_make(&random, &soup);
+    soup.camera.yfov = 1.0;
+    soup.camera.near = 1.0;
+    soup.camera.far = 100.0;
+    soup.textures[0] = (Texture){
+        .width = SOUP_TEXELS, .height = SOUP_TEXELS, .texels = soup.texels[0], .nearest = true};
+    for (int i = 0; i < 4 * SOUP_TEXELS * SOUP_TEXELS; i++)
+        soup.texels[0][i] = (float)(i / 4) / (SOUP_TEXELS * SOUP_TEXELS - 1);
+    soup.scene.textures = soup.textures;
+    soup.scene.texture_count = 1;
+    for (uint32_t i = 0; i < 2; i++) {
+        static const float uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+        soup_square(&soup, i, 5.0 + i, -1, 1);
+        memcpy(soup.uv[i], uv, sizeof uv);
+        soup.meshes[i].uv = soup.uv[i];
+    }
+    for (int i = 0; i < 8; i++)
+        soup.materials[i].base_color_texture = soup.materials[i].metallic_roughness_texture = 0;
+    soup.materials[2].base_color_texture = 1;
+    soup.materials[2].base_color[3] = 2.0f * SHADING_ALPHA_TEST;
+    RenderDesc desc = {.width = 192, .height = 20};
+    Frame definition, tile;
+    paths_render(&soup.scene, desc, REF_PATH_DEFINITION, NULL, &definition);
+    ck_assert_float_lt(((const float *)image_pixel(&definition.final, 191, 0))[3], 1.0f);
+    for (int simd = SIMD_AUTO; simd < SIMD_COUNT; simd++) {
+        desc.simd = (SimdChoice)simd;
+        paths_render_tile(&soup.scene, desc, &tile);
+        paths_check_frames(&tile, &definition);
+        frame_free(&tile);
+    }
+    frame_free(&definition);
+}
+END_TEST
+
 /* ---- small things
  * --------------------------------------------------------------------------------
  */
@@ -171,6 +212,7 @@ int main(void)
     tcase_add_test(tcase, test_soups);
     tcase_add_test(tcase, test_raw_test_loses_close_layers);
     tcase_add_test(tcase, test_raw_test_stores_the_far_end);
+    tcase_add_test(tcase, test_alpha_test_in_whole_blocks);
     tcase_add_test(tcase, test_empty);
     tcase_add_test(tcase, test_limits);
     suite_add_tcase(suite, tcase);

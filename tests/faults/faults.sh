@@ -43,8 +43,13 @@ row() {
 }
 
 # A program that ctest also runs against a driver that does not fuse has a second test, _unfused.
+# What is not called test_ is a script that runs peel.
 build_test() {
-    ninja -C "$build" "${1%_unfused}" >"$work/build.log" 2>&1
+    case $1 in
+    test_*) target=${1%_unfused} ;;
+    *) target=peel ;;
+    esac
+    ninja -C "$build" "$target" >"$work/build.log" 2>&1
 }
 
 run_test() {
@@ -52,9 +57,10 @@ run_test() {
         >"$work/test.log" 2>&1
 }
 
-# The functions whose assertions failed in the run before.
+# The functions whose assertions failed in the run before, or a script's failed checks.
 failed_functions() {
-    sed -n 's/.*:[FE]:[^:]*:\([a-z0-9_]*\):.*/\1/p' "$work/test.log" | LC_ALL=C sort -u | tr '\n' ' '
+    sed -n -e 's/.*:[FE]:[^:]*:\([a-z0-9_]*\):.*/\1/p' -e 's/^FAIL \([^:]*\):.*/\1;/p' \
+        "$work/test.log" | LC_ALL=C sort -u | tr '\n' ' '
 }
 
 note_test() {

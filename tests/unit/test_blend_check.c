@@ -94,10 +94,10 @@ START_TEST(test_every_name)
             ck_assert_msg(report.candidates[at].vectors == VECTORS, "%s", info->name);
             BlendVerdict verdict = blend_verdict(&report, API_COUNT);
             ck_assert_uint_eq(blend_unexplained(&report), 0);
-            ck_assert_msg(info->wrong ? verdict == BLEND_WRONG || verdict == BLEND_NAMED
-                                      : verdict == BLEND_NAMED,
-                          "%s, %s: %s", info->name, format_info(format)->name,
-                          blend_verdict_name(verdict));
+            bool wrong = arithmetic_is_wrong(info, format);
+            ck_assert_msg(
+                wrong ? verdict == BLEND_WRONG || verdict == BLEND_NAMED : verdict == BLEND_NAMED,
+                "%s, %s: %s", info->name, format_info(format)->name, blend_verdict_name(verdict));
             blend_report_free(&report);
         }
 }
@@ -127,6 +127,23 @@ START_TEST(test_wrong_is_caught)
 }
 END_TEST
 
+/* With fewer digits than the format's numbers have: wrong there, and right elsewhere. */
+START_TEST(test_wrong_in_longer_formats)
+{
+    static const char *const names[] = {"half", "half-fused", "half-truncated"};
+    PixelFormat format = blend_formats[_i];
+    bool longer = format != FORMAT_RGBA8 && format != FORMAT_RGBA16F;
+    make_vectors(format);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        blend(names[i], EQUATION_OVER, format);
+        check(EQUATION_OVER, format, 2, VECTORS);
+        ck_assert_msg(blend_verdict(&report, API_COUNT) == (longer ? BLEND_WRONG : BLEND_NAMED),
+                      "%s, %s", names[i], format_info(format)->name);
+        blend_report_free(&report);
+    }
+}
+END_TEST
+
 /* What --list says: the vector of each row is one that no right arithmetic gives. */
 START_TEST(test_list)
 {
@@ -138,11 +155,11 @@ START_TEST(test_list)
         const BlendWrong *row = &list.rows[r];
         const BlendEquation *equation = &equation_info(row->equation)->equation;
         const BlendExample *example = &row->example;
-        ck_assert(row->info->wrong && row->equation == EQUATION_UNDER);
+        ck_assert(arithmetic_is_wrong(row->info, row->format) && row->equation == EQUATION_UNDER);
         for (size_t i = 0; i < arithmetic_count() && row->alone; i++) {
             const ArithmeticInfo *info = arithmetic_info(i);
             if (arithmetic_refuses(&info->arithmetic, equation, row->format) ||
-                (info->wrong && info != row->info))
+                (arithmetic_is_wrong(info, row->format) && info != row->info))
                 continue;
             BlendSteps steps[4];
             arithmetic_steps(&info->arithmetic, equation, row->format, example->source,
@@ -316,6 +333,28 @@ START_TEST(test_rules_floats)
 }
 END_TEST
 
+/* Keep in r32f: the alpha that is not there is 1, so s·(1 − 1) + d is d, and nothing is rounded.
+ * The driver computes s + 1·(d − s), which loses a d far below s. */
+START_TEST(test_rules_keep_one_channel)
+{
+    BlendRuleTally tallies[BLEND_RULES];
+    const float value[4] = {2.0f}, pixel[4] = {0x1p-25f};
+    const Arithmetic driver = {.kind = ARITHMETIC_DRIVER, .fused = true};
+    const BlendEquation *keep = &equation_info(EQUATION_KEEP)->equation;
+    BlendSteps steps[4];
+    arithmetic_steps(&driver, keep, FORMAT_R32F, value, pixel, steps);
+    ck_assert_uint_eq(steps[0].stored, bits(0.0f));
+    for (int i = 0; i < 2; i++) {
+        judge(EQUATION_KEEP, FORMAT_R32F, value, pixel, i ? steps[0].stored : bits(pixel[0]),
+              tallies);
+        ck_assert_uint_eq(rule(tallies, "OpenGL", "2.3.4")->outside, i);
+        ck_assert_uint_eq(rule(tallies, "OpenGL", "17.3.6")->outside, i);
+        ck_assert_uint_eq(rule(tallies, "Vulkan", "")->outside, i);
+        ck_assert_uint_eq(rule(tallies, "Direct3D", "17.5, 3.1")->outside, i);
+    }
+}
+END_TEST
+
 /* What rules say nothing of is not counted; a NaN that Direct3D wants back is. */
 START_TEST(test_rules_unstated)
 {
@@ -403,6 +442,7 @@ int main(void)
     tcase_set_timeout(tcase, 240);
     tcase_add_loop_test(tcase, test_every_name, 0, BLEND_FORMATS);
     tcase_add_test(tcase, test_wrong_is_caught);
+    tcase_add_loop_test(tcase, test_wrong_in_longer_formats, 0, BLEND_FORMATS);
     tcase_add_test(tcase, test_list);
     tcase_add_test(tcase, test_without_a_name);
     tcase_add_test(tcase, test_color_and_alpha);
@@ -410,6 +450,7 @@ int main(void)
     tcase_add_test(tcase, test_worst_in_order);
     tcase_add_test(tcase, test_rules_codes);
     tcase_add_test(tcase, test_rules_floats);
+    tcase_add_test(tcase, test_rules_keep_one_channel);
     tcase_add_test(tcase, test_rules_unstated);
     tcase_add_loop_test(tcase, test_rules_keep, 0, BLEND_FORMATS);
     tcase_add_test(tcase, test_sequences);

@@ -93,24 +93,43 @@ START_TEST(test_refused)
     static const struct {
         const char *text, *message;
     } rows[] = {
-        {"", "equation: '': expected an equation's name or a factor, such as src-alpha"},
-        {"undr", "equation: 'undr': expected an equation's name or a factor, such as src-alpha"},
-        {"Under", "equation: 'Under': expected an equation's name or a factor, such as src-alpha"},
-        {"one,GL_ONE", "equation: 'GL_ONE': expected an equation's name or a factor, such as "
-                       "src-alpha"},
+        {"",
+         "equation: '': expected under, over, over-premultiplied, add, max, weighted-sum, product, "
+         "seed, over-transmittance, replace or keep, or factors, such as one,one-minus-src-alpha"},
+        {"undr",
+         "equation: 'undr': expected under, over, over-premultiplied, add, max, weighted-sum, "
+         "product, "
+         "seed, over-transmittance, replace or keep, or factors, such as one,one-minus-src-alpha"},
+        {"Under",
+         "equation: 'Under': expected under, over, over-premultiplied, add, max, weighted-sum, "
+         "product, "
+         "seed, over-transmittance, replace or keep, or factors, such as one,one-minus-src-alpha"},
+        {"one,GL_ONE",
+         "equation: 'GL_ONE': expected a factor: zero, one, src-color, one-minus-src-color, "
+         "dst-color, "
+         "one-minus-dst-color, src-alpha, one-minus-src-alpha, dst-alpha, one-minus-dst-alpha or "
+         "src-alpha-saturate"},
         {"one", "equation: 'one': expected 2 factors (source, destination) or 4 (also of alpha), "
                 "found 1"},
         {"one,one,one", "equation: 'one,one,one': expected 2 factors (source, destination) or 4 "
                         "(also of alpha), found 3"},
         {"one,one,one,one,one", "equation: 'one,one,one,one,one': expected at most 4 factors, "
                                 "separated by commas"},
-        {"one,one,", "equation: '': expected an equation's name or a factor, such as src-alpha"},
-        {"one,one:", "equation: '': expected a function, such as max"},
-        {"one,one:most", "equation: 'most': expected a function, such as max"},
+        {"one,one,",
+         "equation: '': expected a factor: zero, one, src-color, one-minus-src-color, dst-color, "
+         "one-minus-dst-color, src-alpha, one-minus-src-alpha, dst-alpha, one-minus-dst-alpha or "
+         "src-alpha-saturate"},
+        {"one,one:",
+         "equation: '': expected a function: add, subtract, reverse-subtract, min or max"},
+        {"one,one:most",
+         "equation: 'most': expected a function: add, subtract, reverse-subtract, min or max"},
         {"one,one:max,min,add",
          "equation: 'max,min,add': expected at most 2 functions, separated by commas"},
-        {"under:max", "equation: 'under': expected an equation's name or a factor, such as "
-                      "src-alpha"},
+        {"under:max",
+         "equation: 'under': expected a factor: zero, one, src-color, one-minus-src-color, "
+         "dst-color, "
+         "one-minus-dst-color, src-alpha, one-minus-src-alpha, dst-alpha, one-minus-dst-alpha or "
+         "src-alpha-saturate"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         BlendEquation equation;

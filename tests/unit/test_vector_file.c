@@ -444,7 +444,8 @@ START_TEST(test_checksums)
                                        .mistakes = 1u << MISTAKE_FACTORS_SWAPPED};
     const Arithmetic *arithmetics[] = {&exact, &swapped};
     char operands[VECTOR_DIGEST_TEXT], sums[2][VECTOR_DIGEST_TEXT], end[512], own[2][80];
-    ck_assert_int_eq(vector_results_checksums(&header, 2, arithmetics, operands, sums), RESULT_OK);
+    ck_assert_int_eq(vector_results_checksums(&header, 2, arithmetics, 0, operands, sums),
+                     RESULT_OK);
     const char *path = write_set(VECTOR_CSV, &header);
     scratch_read(path, text, TEXT);
     snprintf(end, sizeof end, "tail -n 1 %s | cut -d ' ' -f 4 | tr -d '\\n'", path);
@@ -469,6 +470,26 @@ START_TEST(test_checksums)
 }
 END_TEST
 
+/* Of several batches, and of sequences: any number of threads gives the same. */
+START_TEST(test_checksums_threads)
+{
+    VectorHeader header = _i ? header_of(VECTORS_SEQUENCES, FORMAT_RGBA16F, 5, 40)
+                             : header_of(VECTORS_RANDOM, FORMAT_RGBA8, 5, 140000);
+    const Arithmetic driver = {.kind = ARITHMETIC_DRIVER}, steps = {.kind = ARITHMETIC_STEPS};
+    const Arithmetic *arithmetics[] = {&exact, &driver, &steps};
+    char operands[2][VECTOR_DIGEST_TEXT], sums[2][3][VECTOR_DIGEST_TEXT];
+    for (int k = 0; k < 2; k++)
+        ck_assert_int_eq(
+            vector_results_checksums(&header, 3, arithmetics, k ? 3 : 1, operands[k], sums[k]),
+            RESULT_OK);
+    ck_assert_str_eq(operands[0], operands[1]);
+    for (int k = 0; k < 3; k++)
+        ck_assert_str_eq(sums[0][k], sums[1][k]);
+    ck_assert_str_ne(sums[0][0], sums[0][1]);
+    ck_assert_str_ne(sums[0][1], sums[0][2]);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("vector_file");
@@ -486,6 +507,7 @@ int main(void)
     tcase_add_test(tcase, test_failing_writes);
     tcase_add_test(tcase, test_unreadable);
     tcase_add_test(tcase, test_checksums);
+    tcase_add_loop_test(tcase, test_checksums_threads, 0, 2);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
 }

@@ -35,8 +35,8 @@ function decode(stored, format) {
 }
 
 /* The program beside a page in one state of it. state: {peel, program, scene, size, settings: index
- * of each, names of methods, edits: {"material.0.alpha": 0.5}, folder, command: arguments of peel for
- * the same, truth: whether the page carries its image}. */
+ * of each, names of methods, edits: {"material.0.alpha": 0.5}, folder, command: arguments of peel
+ * for the same, truth: whether the page carries its image}. */
 class Expected {
     constructor(state) {
         Object.assign(this, state, { frames: new Map(), histories: new Map(), whats: new Set() });
@@ -46,13 +46,14 @@ class Expected {
         const key = side + JSON.stringify(settings);
         if (!this.frames.has(key))
             this.frames.set(key, frame(this.program, side, this.scene, this.size,
-                                       { ...this.settings, ...this.edits, ...settings }, this.folder));
+                                       { ...this.settings, ...this.edits, ...settings },
+                                       this.folder));
         return this.frames.get(key);
     }
     /* The frame of another size, of which the live view has figures. */
     setLive(size) {
-        this.live = frame(this.program, "plain", this.scene, size, { ...this.settings, ...this.edits },
-                          this.folder);
+        this.live = frame(this.program, "plain", this.scene, size,
+                          { ...this.settings, ...this.edits }, this.folder);
     }
     method(name) { return this.render("ref", { method: this.methods.indexOf(name) }); }
     history(pixel) {
@@ -73,7 +74,8 @@ class Expected {
     /* The greatest difference and the root of the mean square. */
     error(method) {
         const a = this.method(method).buffers.get("final").data;
-        const b = (this.truth ? this.render("truth", {}) : this.method("peel-id")).buffers.get("final").data;
+        const other = this.truth ? this.render("truth", {}) : this.method("peel-id");
+        const b = other.buffers.get("final").data;
         let most = 0, squares = 0;
         a.forEach((value, i) => {
             most = Math.max(most, Math.abs(value - b[i]));
@@ -144,7 +146,8 @@ Expected.KINDS = [
     (e, what, pixel) => {
         const name = e.ref.buffers.has(what) ? what : what.slice(0, -2);
         const channel = name === what ? 0 : e.channel(what.at(-1));
-        return e.ref.buffers.has(name) && channel >= 0 ? e.at(e.ref, name, pixel, channel) : undefined;
+        return e.ref.buffers.has(name) && channel >= 0 ? e.at(e.ref, name, pixel, channel)
+                                                       : undefined;
     },
     (e, what, [x, y]) => {
         const [, name, letter] = what.match(/^(.*)\.([rgba])\.code$/) ?? [];

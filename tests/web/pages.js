@@ -13,7 +13,8 @@ const CHROMIUM = process.env.PEEL_CHROMIUM ?? "/usr/bin/chromium";
 /* playwright-core and axe-core, once. */
 function install() {
     if (!fs.existsSync(path.join(__dirname, "node_modules", "playwright-core")))
-        execFileSync("npm", ["ci", "--no-audit", "--no-fund"], { cwd: __dirname, stdio: "inherit" });
+        execFileSync("npm", ["ci", "--no-audit", "--no-fund"],
+                     { cwd: __dirname, stdio: "inherit" });
 }
 
 async function launch() {
@@ -21,8 +22,8 @@ async function launch() {
     return chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox"] });
 }
 
-/* A page, once it is ready where it computes. page.problems: errors on its console, and requests that leave the disk;
- * context: of playwright's newContext. */
+/* A page, once it is ready where it computes. page.problems: errors on its console, and requests
+ * that leave the disk; context: of playwright's newContext. */
 async function open(browser, file, hash = "", context = {}) {
     const inside = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...context });
     const page = await inside.newPage();

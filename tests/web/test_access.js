@@ -1,5 +1,5 @@
-/* The pages for everyone: axe-core's rules in light and dark, by keyboard alone, no motion where none
- * is wanted, three widths. Pictures of what was seen are left in the folder that is given.
+/* The pages for everyone: axe-core's rules in light and dark, by keyboard alone, no motion where
+ * none is wanted, three widths. Pictures of what was seen are left in the folder that is given.
  *
  * node test_access.js PEEL PICTURES_FOLDER */
 "use strict";
@@ -23,7 +23,8 @@ async function obeysRules(page, where) {
     const { violations } = await page.evaluate(() => axe.run(document, {
         runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"] }));
     const lines = violations.map(({ id, help, nodes }) =>
-        `${id}: ${help}: ${nodes.length} of ${nodes[0].html.slice(0, 160)} (${nodes[0].failureSummary})`);
+        `${id}: ${help}: ${nodes.length} of ${nodes[0].html.slice(0, 160)} ` +
+        `(${nodes[0].failureSummary})`);
     assert.equal(lines.length, 0, `${where}:\n${lines.join("\n")}`);
 }
 
@@ -41,7 +42,8 @@ async function reachesAll(page, where) {
     const count = await page.evaluate(() => {
         const all = document.querySelectorAll(
             "a[href], button, input, select, summary, [tabindex='0']");
-        const seen = [...all].filter((one) => !one.disabled && one.tabIndex >= 0 && one.checkVisibility());
+        const seen = [...all].filter((one) =>
+            !one.disabled && one.tabIndex >= 0 && one.checkVisibility());
         seen.forEach((one) => { one.dataset.expected = "yes"; });
         document.body.tabIndex = -1;
         document.body.focus();
@@ -51,13 +53,15 @@ async function reachesAll(page, where) {
         await page.keyboard.press("Tab");
         await page.evaluate(() => {
             const one = document.activeElement, style = getComputedStyle(one);
-            if (style.outlineStyle === "none" && style.boxShadow === "none" && one !== document.body)
+            const plain = style.outlineStyle === "none" && style.boxShadow === "none";
+            if (plain && one !== document.body)
                 one.dataset.unmarked = "yes";
             delete one.dataset.expected;
         });
     }
     const left = await page.evaluate(() => ["expected", "unmarked"].map((name) =>
-        [...document.querySelectorAll(`[data-${name}]`)].map((one) => one.outerHTML.slice(0, 100))));
+        [...document.querySelectorAll(`[data-${name}]`)].map((one) =>
+            one.outerHTML.slice(0, 100))));
     assert.deepEqual(left, [[], []], `${where}: not reached, or not seen to be`);
 }
 

@@ -1,5 +1,5 @@
-/* The course: each lesson's question is answered as a reader would, wrongly and rightly, and what the
- * lessons lead to exists.
+/* The course: each lesson's question is answered as a reader would, wrongly and rightly, and what
+ * the lessons lead to exists.
  *
  * node test_course.js PEEL */
 "use strict";
@@ -105,7 +105,8 @@ async function says(page, right, pattern, where) {
             [element.className, element.textContent]);
         if (kind === (right ? "right" : "not-yet") && (right || pattern.test(text)))
             return;
-        assert.ok(Date.now() < end, `${where}: "${text}" (${kind}), expected ${right ? "right" : pattern}`);
+        assert.ok(Date.now() < end,
+                  `${where}: "${text}" (${kind}), expected ${right ? "right" : pattern}`);
         await page.waitForTimeout(50);
     }
 }
@@ -122,7 +123,8 @@ async function testLinks(page, where) {
             (!step || app.steps[app.step].id === step) && (!view || app.view === view) &&
             (!method || app.settings.method.choices[app.settings.method.value] === method) &&
             (!focus || document.activeElement.id === focus),
-            ["step", "view", "method", "focus"].map((name) => wanted.get(name)), { timeout: WAIT_MS })
+            ["step", "view", "method", "focus"].map((name) => wanted.get(name)),
+            { timeout: WAIT_MS })
             .catch(() => assert.fail(`${where}: "${wanted}" leads nowhere`));
     }
 }

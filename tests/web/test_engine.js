@@ -1,5 +1,5 @@
-/* The WebAssembly module's frames beside the program's, of every built-in scene: all buffers have the
- * same bits.
+/* The WebAssembly module's frames beside the program's, of every built-in scene: all buffers have
+ * the same bits.
  *
  * node test_engine.js PEEL WEB_FRAME SOURCE_DIR */
 "use strict";

@@ -34,7 +34,8 @@ function same(shown, value, what) {
 
 /* The text of a number means the number: decimals that read back, or four digits of a figure. */
 function reads(text, shown) {
-    const number = parseNumber(shown), decimal = Number(text.split(" ")[0].replace("inf", "Infinity"));
+    const number = parseNumber(shown);
+    const decimal = Number(text.split(" ")[0].replace("inf", "Infinity"));
     return Number.isNaN(decimal) || Math.fround(decimal) === Math.fround(number) ||
            Math.abs(decimal - number) <= 1e-3 * Math.abs(number);
 }
@@ -54,8 +55,8 @@ async function compare(page, expected, pixel, where) {
         if (wrong.length === 0)
             return shown.length;
         if (Date.now() > end)
-            assert.fail(`${where}, pixel ${pixel}: ${wrong.length} of ${shown.length} numbers are ` +
-                        `not the program's:\n${wrong.slice(0, 8).join("\n")}`);
+            assert.fail(`${where}, pixel ${pixel}: ${wrong.length} of ${shown.length} numbers ` +
+                        `are not the program's:\n${wrong.slice(0, 8).join("\n")}`);
         await page.waitForTimeout(50);
     }
 }
@@ -92,9 +93,10 @@ async function choosePixel(page, pixel) {
 /* The pixel with most layers, one with some, and a corner. */
 function pixels(expected) {
     const [width, height] = expected.size, counts = [];
-    const names = [...expected.ref.buffers.keys()].filter((name) => /^peel\.\d+\.primitive$/.test(name));
+    const layers = [...expected.ref.buffers.values()].filter(({ name }) =>
+        /^peel\.\d+\.primitive$/.test(name));
     for (let i = 0; i < width * height; i++)
-        counts.push(names.filter((name) => expected.ref.buffers.get(name).data[i] !== 0xffffffff).length);
+        counts.push(layers.filter(({ data }) => data[i] !== 0xffffffff).length);
     const most = Math.max(...counts), at = (i) => [i % width, Math.floor(i / width)];
     return [at(counts.indexOf(most)), at(counts.findLastIndex((count) => count > 0)), [0, 0]];
 }
@@ -136,7 +138,8 @@ function editScene(scene, index, alpha, folder) {
 
 /* Another alpha and two passes, set in the live view; then all views show the new frame. */
 async function edit(page, state, folder) {
-    const index = await page.evaluate(() => app.scene.materials.findIndex(({ mode }) => mode === "blend"));
+    const index = await page.evaluate(() =>
+        app.scene.materials.findIndex(({ mode }) => mode === "blend"));
     const args = [editScene(state.scene, index, 0.3125, folder), ...state.command.slice(1),
                   "--passes", "2"];
     await page.click('[data-view="live"]');
@@ -151,9 +154,13 @@ async function edit(page, state, folder) {
 
 /* All that is folded of a pixel's fragments: edges, surfaces, each light's terms. */
 async function unfold(page, expected, pixel) {
-    await page.evaluate(() => document.querySelectorAll("#pixel .fold").forEach((one) => one.click()));
+    const clickAll = () => page.evaluate(() => {
+        for (const fold of document.querySelectorAll("#pixel .fold"))
+            fold.click();
+    });
+    await clickAll();
     const total = await compare(page, expected, pixel, `${expected.scene}: unfolded`);
-    await page.evaluate(() => document.querySelectorAll("#pixel .fold").forEach((one) => one.click()));
+    await clickAll();
     return total;
 }
 
@@ -170,7 +177,8 @@ async function testScene(browser, scene) {
     await choosePixel(page, second);
     total += await walk(page, expected, second, "ArrowLeft");
     const edited = await edit(page, expected, folder);
-    await page.waitForFunction(() => live.frame?.refined && !live.refining, null, { timeout: 60000 });
+    await page.waitForFunction(() => live.frame?.refined && !live.refining, null,
+                               { timeout: 60000 });
     edited.setLive(await page.evaluate(() => [live.frame.width, live.frame.height]));
     total += await compare(page, edited, second, `${scene}, live`);
     await page.click('[data-view="space"]');
@@ -194,18 +202,20 @@ async function testMethods(browser, scene) {
     let total = 0, pixel = null;
     for (const method of state.methods.filter((name) => name !== "peel")) {
         await page.selectOption("#step-method", method);
-        await page.waitForFunction((name) => app.settings.method.choices[app.settings.method.value] ===
-            name && !document.body.dataset.busy, method);
+        await page.waitForFunction((name) => !document.body.dataset.busy &&
+            app.settings.method.choices[app.settings.method.value] === name, method);
         const expected = new Expected({ ...state, command: [...state.command, "--method", method],
             settings: { ...state.settings, method: state.methods.indexOf(method) } });
         pixel ??= pixels(new Expected(state))[0];
         await choosePixel(page, pixel);
         total += await walk(page, expected, pixel, "ArrowRight");
     }
+    const settings = { ...state.settings, method: state.methods.indexOf("painter") };
     const last = new Expected({ ...state, command: [...state.command, "--method", "painter"],
-                                settings: { ...state.settings, method: state.methods.indexOf("painter") } });
+                                settings });
     await page.click("#methods summary");
-    await page.waitForFunction(() => !document.querySelector("#methods .later"), null, { timeout: 60000 });
+    await page.waitForFunction(() => !document.querySelector("#methods .later"), null,
+                               { timeout: 60000 });
     total += await compare(page, last, pixel, `${scene}: methods`);
     await close(page);
     fs.rmSync(folder, { recursive: true });
@@ -250,7 +260,7 @@ async function main() {
         }
         await testAddresses(browser);
         const start = Date.now(), total = await testMethods(browser, "tutorial");
-        console.log(`other methods: ${total} numbers, all the program's (${Date.now() - start} ms)`);
+        console.log(`methods: ${total} numbers, all the program's (${Date.now() - start} ms)`);
     } finally {
         await browser.close();
     }
