@@ -112,12 +112,6 @@ static int fragment_of(const History *history, uint32_t primitive)
     return HISTORY_NONE;
 }
 
-void retrace_copy(double *out, const float *values, int count)
-{
-    for (int i = 0; i < count; i++)
-        out[i] = (double)values[i];
-}
-
 static void copy_term(const ShadeTerm *term, HistoryTerm *out)
 {
     *out = (HistoryTerm){
@@ -138,12 +132,7 @@ static void copy_term(const ShadeTerm *term, HistoryTerm *out)
 Result retrace_put_shading(const Pass *pass, History *history, HistorySurface *surface,
                            const ShadeForm *form, const Texel *texel, const float source[4])
 {
-    retrace_copy(surface->position, texel->position, 3);
-    retrace_copy(surface->normal, texel->normal, 3);
-    retrace_copy(surface->base, texel->diffuse, 4);
-    surface->roughness = (double)texel->material[0];
-    surface->metallic = (double)texel->material[1];
-    surface->occlusion = (double)texel->material[2];
+    retrace_put_surface(texel, surface);
     retrace_copy(surface->source, source, 4);
     surface->lit = true;
     size_t count = pass->view.light_count;

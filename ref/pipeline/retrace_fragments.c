@@ -7,20 +7,20 @@
 
 /* ---- what the pipeline rasterizes, culled or not ---- */
 
-static void fill_surface(const Pass *pass, const Setup *setup, const Primitive *primitive, int x,
-                         int y, HistorySurface *out)
+void retrace_copy(double *out, const float *values, int count)
 {
-    Texel texel;
-    fragment_surface(pass, setup, primitive, x, y, &texel);
-    for (int i = 0; i < 3; i++) {
-        out->position[i] = (double)texel.position[i];
-        out->normal[i] = (double)texel.normal[i];
-    }
-    for (int i = 0; i < 4; i++)
-        out->base[i] = (double)texel.diffuse[i];
-    out->roughness = (double)texel.material[0];
-    out->metallic = (double)texel.material[1];
-    out->occlusion = (double)texel.material[2];
+    for (int i = 0; i < count; i++)
+        out[i] = (double)values[i];
+}
+
+void retrace_put_surface(const Texel *texel, HistorySurface *out)
+{
+    retrace_copy(out->position, texel->position, 3);
+    retrace_copy(out->normal, texel->normal, 3);
+    retrace_copy(out->base, texel->diffuse, 4);
+    out->roughness = (double)texel->material[0];
+    out->metallic = (double)texel->material[1];
+    out->occlusion = (double)texel->material[2];
 }
 
 static void fill_draw(const Pass *pass, uint32_t draw_index, HistoryFragment *out)
@@ -59,6 +59,7 @@ static Result find_one(const Pass *pass, const Geometry *geometry, const Primiti
     const Draw *draw = &pass->view.draws[primitive->draw];
     Setup setup;
     HistoryFragment found = {.primitive = primitive->id, .peel = HISTORY_NONE};
+    Texel texel;
     bool covered;
     setup_make(corners, primitive->swap, draw->flipped, primitive->box, &setup);
     if (!fill_edges(&setup, x, y, &found, &covered))
@@ -76,7 +77,8 @@ static Result find_one(const Pass *pass, const Geometry *geometry, const Primiti
                  : covered                       ? HISTORY_HIDDEN
                                                  : HISTORY_FILL_RULE;
     fill_draw(pass, primitive->draw, &found);
-    fill_surface(pass, &setup, primitive, x, y, &found.surface);
+    fragment_surface(pass, &setup, primitive, x, y, &texel);
+    retrace_put_surface(&texel, &found.surface);
     found.distance = -found.surface.position[2];
     *fragment = found;
     return RESULT_OK;
@@ -192,8 +194,7 @@ static Result find_clipped(const Pass *pass, const AllTriangles *all, const CutT
             surface->position[i] += weight[k] * (double)corners[k]->position[i];
             surface->normal[i] += weight[k] * (double)corners[k]->normal[i];
         }
-    for (int i = 0; i < 4; i++)
-        surface->base[i] = (double)material->base_color[i];
+    retrace_copy(surface->base, material->base_color, 4);
     surface->roughness = (double)material->roughness;
     surface->metallic = (double)material->metallic;
     surface->occlusion = (double)material->occlusion;

@@ -26,6 +26,9 @@ Result retrace_find_cut(const Pass *pass, const Geometry *geometry, AllTriangles
 Result retrace_find_fragments(const Pass *pass, const AllTriangles *all, int x, int y,
                               History *out);
 
+void retrace_copy(double *out, const float *values, int count);
+void retrace_put_surface(const Texel *texel, HistorySurface *out);
+
 /* Whether the pipeline drew it: it is not culled, clipped or its neighbour's. */
 static inline bool retrace_drawn(const HistoryFragment *fragment)
 {

@@ -32,6 +32,4 @@ Result retrace_put_shading(const Pass *pass, History *history, HistorySurface *s
  * frame. */
 void retrace_put_results(const PixelTrace *trace, const Frame *frame, int x, int y, History *out);
 
-void retrace_copy(double *out, const float *values, int count);
-
 #endif

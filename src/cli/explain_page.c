@@ -7,8 +7,10 @@
 #include <stdlib.h>
 
 typedef struct Sides {
+    const char *name; /* of the scene */
     Frame frames[RENDERER_COUNT];
     TraceStore *traces[RENDERER_COUNT];
+    bool full;                         /* a trace is more than a page can keep */
     char missing[RENDERER_COUNT][256]; /* why there is no frame; "" where there is one */
 } Sides;
 
@@ -18,12 +20,12 @@ static Result render(const Scene *scene, const RenderDesc *desc, int renderer, S
     Result result = renderer == RENDERER_TRUTH ? RESULT_OK : store_create(0, trace);
     if (result != RESULT_OK)
         return result;
-    if (*trace)
-        store_sink(*trace)->details = true;
+    ExplainSink sink = report_explain_sink(*trace ? store_sink(*trace) : NULL, sides->name);
     progress_begin(threeway_renderer_name(renderer), 0);
-    result = bind_renderers[renderer](scene, desc, *trace ? store_sink(*trace) : NULL,
-                                      &sides->frames[renderer]);
+    result =
+        bind_renderers[renderer](scene, desc, *trace ? &sink.sink : NULL, &sides->frames[renderer]);
     progress_end();
+    sides->full = sink.full;
     return result;
 }
 
@@ -34,15 +36,10 @@ static Result render_beside(const RenderOptions *options, const Scene *scene,
     Result result = renderer == RENDERER_GL ? options_check_fma(options) : RESULT_OK;
     if (result == RESULT_OK)
         result = render(scene, desc, renderer, sides);
-    if (result != RESULT_NO_GL && result != RESULT_UNSUPPORTED)
+    if (sides->full || (result != RESULT_NO_GL && result != RESULT_UNSUPPORTED))
         return result;
     snprintf(sides->missing[renderer], sizeof sides->missing[renderer], "%s", result_message());
     return RESULT_OK;
-}
-
-static const char *name_of(const RenderOptions *options, const Scene *scene)
-{
-    return scene->name ? scene->name : options->scene_path;
 }
 
 /* gl first: where nobody says so, ref fuses as the driver does. */
@@ -54,8 +51,6 @@ static Result render_all(const RenderOptions *options, const Scene *scene, Rende
         desc->unfused = !sides->frames[RENDERER_GL].fused;
     if (result == RESULT_OK)
         result = render(scene, desc, RENDERER_REF, sides);
-    if (result == RESULT_OK)
-        result = report_explain_check(name_of(options, scene), sides->traces[RENDERER_REF]);
     if (result == RESULT_OK)
         result = render_beside(options, scene, desc, RENDERER_TRUTH, sides);
     return result;
@@ -72,11 +67,11 @@ static ExplainSide side_of(const Sides *sides, int renderer)
 Result explain_page_write(const RenderOptions *options, const Scene *scene, const ExplainPage *page,
                           size_t *bytes)
 {
-    Sides sides = {0};
+    Sides sides = {.name = scene->name ? scene->name : options->scene_path};
     RenderDesc desc = options->desc;
     Result result = render_all(options, scene, &desc, &sides);
     if (result == RESULT_OK) {
-        ExplainDesc explain = {.name = name_of(options, scene),
+        ExplainDesc explain = {.name = sides.name,
                                .command = page->command,
                                .scene = scene,
                                .desc = desc,

@@ -57,9 +57,14 @@ static void put_page(FileWriter *page, const ExplainDesc *explain, const Text *d
     put(page, "<script>\napp.start();\n</script>\n</body>\n</html>\n");
 }
 
-static size_t page_size(const Text *data)
+/* An upper bound, by a few kilobytes. */
+static size_t page_size(const ExplainDesc *explain, const Text *data)
 {
-    size_t size = data->count + strlen(page_html);
+    enum {
+        MARKUP = 4096,   /* that put_page writes itself */
+        LONGEST_NAME = 6 /* of a character that html_text escapes */
+    };
+    size_t size = MARKUP + LONGEST_NAME * strlen(explain->name) + data->count + strlen(page_html);
     for (size_t i = 0; i < sizeof styles / sizeof styles[0]; i++)
         size += strlen(styles[i]);
     for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; i++)
@@ -93,20 +98,23 @@ static Result write(const ExplainDesc *explain, const Text *data, const char *di
     return file_writer_close(&page, true);
 }
 
-Result report_explain_check(const char *name, const TraceStore *store)
+static Result pass_on(TraceSink *sink, const TraceBuffer *buffer)
 {
-    double bytes = 0.0;
-    for (int i = 0; i < store_count(store); i++) {
-        const StoredBuffer *buffer = store_buffer(store, i);
-        bytes += (double)format_pixel_bytes(buffer->format) * buffer->width * buffer->height;
-    }
-    if (bytes <= (double)EXPLAIN_MAX_TRACE_BYTES)
-        return RESULT_OK;
+    ExplainSink *all = (ExplainSink *)sink;
+    all->bytes +=
+        format_pixel_bytes(buffer->format) * (size_t)buffer->width * (size_t)buffer->height;
+    if (all->bytes <= EXPLAIN_MAX_TRACE_BYTES)
+        return all->next->put(all->next, buffer);
+    all->full = true;
     return result_fail(RESULT_UNSUPPORTED,
-                       "%s: a page cannot keep the %.0f MB of this frame's %d buffers, expected at "
-                       "most %.0f: a smaller --size, or fewer --passes",
-                       name, 1e-6 * bytes, store_count(store),
-                       1e-6 * (double)EXPLAIN_MAX_TRACE_BYTES);
+                       "%s: a page cannot keep this frame, its buffers up to %s take more than "
+                       "%.0f MB: expected a smaller --size, or fewer --passes",
+                       all->name, buffer->name, 1e-6 * (double)EXPLAIN_MAX_TRACE_BYTES);
+}
+
+ExplainSink report_explain_sink(TraceSink *next, const char *name)
+{
+    return (ExplainSink){.sink = {.put = pass_on, .details = true}, .next = next, .name = name};
 }
 
 Result report_explain_write(const ExplainDesc *explain, const char *dir, const char *file,
@@ -116,11 +124,11 @@ Result report_explain_write(const ExplainDesc *explain, const char *dir, const c
     ExplainRoom room = {0};
     Result result = explain_data(explain, &data, &room);
     if (result == RESULT_OK)
-        result = check_size(explain, &room, page_size(&data));
+        result = check_size(explain, &room, page_size(explain, &data));
     if (result == RESULT_OK)
         result = write(explain, &data, dir, file);
     if (bytes)
-        *bytes = page_size(&data);
+        *bytes = page_size(explain, &data);
     text_free(&data);
     return result;
 }

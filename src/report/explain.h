@@ -32,9 +32,18 @@ typedef struct ExplainDesc {
 #define EXPLAIN_MAX_BYTES       ((size_t)15000000)
 #define EXPLAIN_MAX_TRACE_BYTES ((size_t)1000000000)
 
-/* Whether a page can keep a frame with this trace of ref: twice, in the pipeline's memory and in
- * its own. UNSUPPORTED and a message where it cannot. name: of the scene. */
-Result report_explain_check(const char *name, const TraceStore *ref);
+/* Passes a frame's buffers on, and ends the rendering with UNSUPPORTED once they are more than a
+ * page can keep, which it does twice: in the pipeline's memory and in its own. */
+typedef struct ExplainSink {
+    TraceSink sink;
+    TraceSink *next;
+    const char *name; /* of the scene */
+    size_t bytes;
+    bool full; /* ended the rendering */
+} ExplainSink;
+
+/* next and name stay the caller's; sink.details is on. */
+ExplainSink report_explain_sink(TraceSink *next, const char *name);
 
 /* Writes dir/file; dir exists; ref has a frame and its trace. *bytes, which may be NULL: the page's
  * size. UNSUPPORTED where the page would be larger than it may be: the message says what takes the

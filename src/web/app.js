@@ -129,15 +129,15 @@ app.tell = (...whats) => {
 app.change = async ({ step, pixel, view, ...settings }) => {
     const told = [];
     app.say("");
+    if (Object.keys(settings).length > 0) {
+        await app.set(settings);
+        told.push("settings");
+    }
+    if (view !== undefined && VIEWS.includes(view) && view !== app.view) {
+        app.view = view;
+        told.push("view");
+    }
     try {
-        if (Object.keys(settings).length > 0) {
-            await app.set(settings);
-            told.push("settings");
-        }
-        if (view !== undefined && VIEWS.includes(view) && view !== app.view) {
-            app.view = view;
-            told.push("view");
-        }
         if (app.stale && app.view !== "live")
             await app.refresh();
     } catch (error) {
@@ -151,20 +151,26 @@ app.change = async ({ step, pixel, view, ...settings }) => {
     app.tell(...told);
 };
 
+/* Each by itself: one that is refused leaves the others. */
 app.set = async (settings) => {
-    for (const [name, wanted] of Object.entries(settings)) {
-        const known = app.settings[name];
-        if (name === "size") {
-            app.settings.size = wanted;
-        } else {
-            let value = Number(wanted);
-            if (known?.choices && typeof wanted === "string" && known.choices.includes(wanted))
-                value = known.choices.indexOf(wanted);
-            await app.engine.set(name, value);
-            app.settings[name] = known?.choices ? { choices: known.choices, value } : value;
+    for (const [name, wanted] of Object.entries(settings))
+        try {
+            await app.setOne(name, wanted);
+            app.stale = true;
+        } catch (error) {
+            app.say(error.message);
         }
-        app.stale = true;
+};
+
+app.setOne = async (name, wanted) => {
+    const choices = app.settings[name]?.choices;
+    if (name === "size") {
+        app.settings.size = wanted;
+        return;
     }
+    const value = choices?.includes(wanted) ? choices.indexOf(wanted) : Number(wanted);
+    await app.engine.set(name, value);
+    app.settings[name] = choices ? { choices, value } : value;
 };
 
 app.toStep = (wanted) => {
@@ -328,7 +334,7 @@ app.followPart = (name, text, wanted) => {
         wanted.step = /^\d+$/.test(text) ? Number(text) : text;
     else if (name === "view")
         wanted.view = text;
-    else if (name !== "pixel" && name !== "size" && app.settings[name] !== undefined)
+    else if (name !== "pixel" && name !== "size" && Object.hasOwn(app.settings, name))
         wanted[name] = app.settings[name].choices ? text : Number(text);
 };
 

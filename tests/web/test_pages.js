@@ -222,6 +222,33 @@ async function testMethods(browser, scene) {
     return total;
 }
 
+/* Addresses with parts that cannot be: those are left out, and the others count. */
+async function testAddresses(browser) {
+    const folder = fs.mkdtempSync(path.join(os.tmpdir(), "peel-pages-"));
+    makePage("chain", folder);
+    const cases = [
+        ["#step=999&pixel=-1,abc&view=zzz&passes=1e9&method=dual", /passes/, { method: "dual" }],
+        ["#accum=rgba8&lights=NaN&depth=d16&view=live", /lights/,
+         { accum: "rgba8", depth: "d16", view: "live" }],
+        ["#constructor=2&size=0x5&edit=9.alpha:7;;camera9:1&%E0%A4%A&pixel=9999,0", /^$/,
+         { pixel: `${SIZE[0] - 1},0` }],
+    ];
+    for (const [hash, said, wanted] of cases) {
+        const page = await open(browser, path.join(folder, "index.html"), hash);
+        await page.waitForFunction((name) => app.settings.method && app.view === name,
+                                   wanted.view ?? "steps", { timeout: WAIT_MS });
+        assert.match(await page.textContent("#status"), said, hash);
+        const now = await page.evaluate(() => ({ view: app.view, pixel: String(app.pixel),
+            method: app.choice("method"), accum: app.choice("accum"), depth: app.choice("depth"),
+            size: String(app.settings.size) }));
+        const unset = { view: "steps", method: "peel", accum: "rgba32f", depth: "d32f",
+                        size: String(SIZE), pixel: now.pixel };
+        assert.deepEqual(now, { ...unset, ...wanted }, hash);
+        await close(page);
+    }
+    fs.rmSync(folder, { recursive: true });
+}
+
 async function main() {
     const scenes = execFileSync(peel, ["scenes"], { encoding: "utf8" }).split("\n").filter(Boolean)
         .map((line) => line.split(" ")[0]);
@@ -231,6 +258,7 @@ async function main() {
             const start = Date.now(), total = await testScene(browser, scene);
             console.log(`${scene}: ${total} numbers, all the program's (${Date.now() - start} ms)`);
         }
+        await testAddresses(browser);
         const start = Date.now(), total = await testMethods(browser, "tutorial");
         console.log(`methods: ${total} numbers, all the program's (${Date.now() - start} ms)`);
     } finally {
