@@ -139,19 +139,23 @@ LESSONS.push({
         const frame = await course.figures(), { passes } = app.settings;
         const count = (value, what) => course.value(value, `frame.${what}`, "count");
         const lost = frame.lost_to_pass_limit;
+        if (!["peel", "peel-id", "forward"].includes(app.choice("method")))
+            return { right: false, text: `The method ${app.choice("method")} does not take one ` +
+                "layer in each pass: choose peel." };
         if (passes === 0)
             return { right: false, text: "Passes is automatic now: the program goes on until a " +
                 "pass finds nothing. Set a number." };
         if (lost > 0)
             return { right: false, text: ["With ", count(frame.peels, "peels"),
                 frame.peels === 1 ? " peel " : " peels ",
-                count(lost, "lost_to_pass_limit"), " fragments are never reached: they are " +
-                "behind all layers that were taken."] };
+                count(lost, "lost_to_pass_limit"),
+                lost === 1 ? " fragment is" : " fragments are", " never reached, behind all " +
+                "layers that were taken."] };
         if (frame.peels < passes)
             return { right: false, text: ["Nothing is lost, but only ", count(frame.peels, "peels"),
                 " peels found anything: fewer will do."] };
         return { right: true, text: ["Some pixels have ", count(frame.max_layers, "max_layers"),
-            "layers, and each peel takes one of them: the nearest behind the previous depth. " +
+            " layers, and each peel takes one of them: the nearest behind the previous depth. " +
             "With one peel less the last layer would be lost."] };
     },
 });
