@@ -30,8 +30,12 @@ LESSONS.push({
         "*source*.",
         "What the eye gets is a sum: source + (1 − α) · light from behind. To put " +
         "one thing over another like this is to *blend* them. The part that still comes through, " +
-        "here 1 − α, is called *transmittance*, T. [After the square is blended]" +
-        "(step=peel-0-blend&pixel=18,61) the page shows T = 0.75 for this pixel.",
+        "here 1 − α, is called *transmittance*, T. At the ring, in red: 0.215 from the " +
+        "square, + 0.75 · 0.817 from the wall, = 0.828 to the eye.",
+        "The page adds in another order: [first the square](step=peel-0-blend&pixel=18,61), to " +
+        "nothing, which leaves T = 0.75; and later, as the last of all, [the wall]" +
+        "(step=light&pixel=18,61), times T. The sum is the same; lesson 4 tells why it is done " +
+        "so.",
     ],
     question: [
         "Make the square at the ring let exactly a tenth of the light through. Its material is " +
