@@ -3,7 +3,7 @@
 "use strict";
 
 const course = { number: Number(document.body.dataset.lesson ?? 0), section: null, verdict: null,
-                 timer: null, asked: 0 };
+                 strip: null, timer: null, asked: 0 };
 
 const COURSE_WAIT_MS = 250; /* after the last change */
 
@@ -77,6 +77,23 @@ course.fill = (lesson, titles) => {
             course.verdict),
         app.element("p", { className: "note", textContent: `Source: ${lesson.source}` }),
         course.others(number, titles));
+    course.makeStrip();
+};
+
+/* The verdict again, at the edge of the window: from when the question was first seen, while it
+ * is out of view. A screen reader has the verdict itself. */
+course.makeStrip = () => {
+    course.strip = app.element("div", { id: "lesson-strip", hidden: true });
+    course.strip.setAttribute("aria-hidden", "true");
+    course.strip.addEventListener("click", () =>
+        course.verdict.scrollIntoView({ block: "center" }));
+    document.body.append(course.strip);
+    const question = course.verdict.parentElement;
+    let met = false;
+    new IntersectionObserver(([{ isIntersecting }]) => {
+        met ||= isIntersecting;
+        course.strip.hidden = isIntersecting || !met;
+    }).observe(question);
 };
 
 course.others = (number, titles) => {
@@ -139,6 +156,8 @@ course.check = async () => {
         course.verdict.replaceChildren(
             app.element("strong", { textContent: right ? "\u2713 Right. " : "Not yet. " }),
             ...[text].flat());
+        course.strip.className = course.verdict.className;
+        course.strip.textContent = course.verdict.textContent;
     } catch (error) {
         app.say(error.message);
     }
