@@ -329,7 +329,7 @@ walk.peelSwap = (k) => ({
     source: walk.EVERITT,
 });
 
-/* Both buffers under their names; the roles move from one to the other. */
+/* Both buffers under their names, and over each its role, which comes from the other. */
 walk.swap = (k) => {
     const shown = [k, k - 1].sort((a, b) => (a + 2) % 2 - (b + 2) % 2).map((peel) => peel < 0
         ? app.element("figure", { className: "picture" }, app.element("figcaption", {},
@@ -337,13 +337,11 @@ walk.swap = (k) => {
             app.element("div", { className: "frame empty" }))
         : figure.make(`Buffer ${walk.side(peel)}: layer ${peel + 1}`,
                       draw.depth(app.frame.buffer(`peel.${peel}.depth`))));
-    const role = (text, left) => app.element("span", {
-        className: `role ${left ? "left" : "right"}`, textContent: text });
-    const even = k % 2 === 0;
+    shown.forEach((picture, i) => picture.prepend(app.element("div", {
+        className: `role ${i === 0 ? "left" : "right"}` }, app.element("span", {
+            textContent: i === k % 2 ? "previous depth" : "cleared and written next" }))));
     return app.element("div", { className: "swap" },
-        app.element("div", { className: "roles" }, role("previous depth", even),
-                    role("cleared and written next", !even)),
-        app.element("div", { className: "pictures count-2" }, ...shown));
+        app.element("div", { className: "pictures" }, ...shown));
 };
 
 walk.PARTS = [["compare", walk.peelCompare], ["discard", walk.peelDiscard],
