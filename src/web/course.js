@@ -52,6 +52,8 @@ course.make = () => {
     course.section = app.element("section", { id: "lesson" });
     course.section.setAttribute("aria-label", "The lesson");
     document.body.prepend(course.section);
+    course.fold("methods-panel");
+    course.fold("pixel");
     if (!location.hash)
         history.replaceState(null, "", `#${lesson.start}`);
     app.on("scene", () => {
@@ -61,6 +63,13 @@ course.make = () => {
     for (const what of ["frame", "pixel", "settings", "edit", "view"])
         app.on(what, course.later);
     live.listeners.push(course.later);
+};
+
+/* What the lessons do not speak of is folded, under its heading. */
+course.fold = (id) => {
+    const section = document.getElementById(id), [heading, ...rest] = section.children;
+    section.append(app.element("details", { className: "folded" },
+        app.element("summary", {}, heading), ...rest));
 };
 
 course.fill = (lesson, titles) => {
