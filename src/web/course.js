@@ -172,8 +172,16 @@ course.check = async () => {
     }
 };
 
-/* A number in a verdict. */
-course.value = (value, what, format = "r32f") => app.numberElement(value, format, what);
+/* Whether a number is the wanted one, in the digits that are shown. */
+course.near = (value, wanted) => app.rounded(value) === app.rounded(wanted);
+
+/* A number in a verdict, of four digits; what it is exactly is in its title. */
+course.value = (value, what, format = "r32f") => {
+    const element = app.numberElement(value, format, what);
+    if (format !== "count")
+        element.textContent = app.rounded(app.stored(value, format));
+    return element;
+};
 
 if (course.number > 0)
     course.make();

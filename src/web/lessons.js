@@ -47,11 +47,14 @@ LESSONS.push({
         const frame = await course.frame(), pixel = [18, 61];
         const through = course.at(frame, "peel.0.accum", pixel, 3);
         const number = course.value(through, "peel.0.accum.a");
-        if (Math.abs(through - 0.1) < 0.002)
+        if (edits.mode(4) === "opaque")
+            return { right: false, text: "At α = 1 the square is opaque: it is drawn with the " +
+                "wall and no longer blended, and nothing comes through it." };
+        if (course.near(through, 0.1))
             return { right: true, text: ["T is ", number, ". The square keeps α = 0.9 and " +
                 "lets 1 − 0.9 through; its source has become brighter, as it is now " +
                 "multiplied by 0.9."] };
-        if (Math.abs(through - 0.9) < 0.02)
+        if (course.near(through, 0.9))
             return { right: false, text: ["T is ", number, ". α is what the square keeps, " +
                 "not what it lets through."] };
         return { right: false, text: ["At the ring T is ", number, "; a tenth is 0.1."] };
@@ -157,7 +160,7 @@ LESSONS.push({
                 "layers that were taken."] };
         if (frame.peels < passes)
             return { right: false, text: ["Nothing is lost, but only ", count(frame.peels, "peels"),
-                " peels found anything: fewer will do."] };
+                frame.peels === 1 ? " peel" : " peels", " found anything: fewer will do."] };
         return { right: true, text: ["Some pixels have ", count(frame.max_layers, "max_layers"),
             " layers, and each peel takes one of them: the nearest behind the previous depth. " +
             "With one peel less the last layer would be lost."] };
@@ -190,7 +193,7 @@ LESSONS.push({
         "(1 − α of a) times, which is T after a.",
     ],
     question: [
-        "After the three squares at the ring, T is 0.421875. [Set their " +
+        "After the three squares at the ring, T is 0.4219. [Set their " +
         "alpha](view=live&focus=material-4-alpha) so that an eighth of the light comes through " +
         "all three.",
     ],
@@ -201,7 +204,10 @@ LESSONS.push({
         const name = `peel.${Math.min(2, frame.peels - 1)}.accum`;
         const through = course.at(frame, name, pixel, 3);
         const number = course.value(through, `${name}.a`);
-        if (Math.abs(through - 0.125) < 0.002)
+        if (edits.mode(4) === "opaque")
+            return { right: false, text: "At α = 1 the squares are opaque: they are drawn with " +
+                "the wall and no longer blended, and nothing comes through." };
+        if (course.near(through, 0.125))
             return { right: true, text: ["T is ", number, ". With α = 0.5 each square halves " +
                 "what is left: 1 · 0.5 · 0.5 · 0.5. The third one counts only a " +
                 "quarter of its own light."] };

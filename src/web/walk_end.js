@@ -10,13 +10,13 @@ walk.stop = () => {
         id: "stop", kind: "peel", group: "Peels", code: [8],
         title: limited ? "The number of peels was limited" : "Nothing is left to peel",
         text: limited
-            ? ["After ", count(peels, "peels"), " peels the limit was reached, and ",
-               count(lost, "lost_to_pass_limit"), " fragments were never taken. The light they " +
-               "would have added is at most what still came through in front of them: a " +
+            ? ["After ", count(peels, "peels"), peels === 1 ? " peel" : " peels", " the limit was reached, and ",
+               count(lost, "lost_to_pass_limit"), lost === 1 ? " fragment was" : " fragments were",
+               " never taken. The light they " + "would have added is at most what still came through in front of them: a " +
                "transmittance of up to ", app.numberElement(residual, "double", "frame.residual_max"),
                "."]
             : ["One more geometry pass would keep no fragment: every transparent surface was taken " +
-               "by one of the ", count(peels, "peels"), " peels, in ",
+               "by one of the ", count(peels, "peels"), peels === 1 ? " peel, in " : " peels, in ",
                count(passes, "geometry_passes"), " geometry passes."],
         pictures: () => [{ title: "Layers in each pixel", picture: walk.layerCounts() }],
         equation: ([x, y]) => walk.formula`layers here: ${app.numberElement(
