@@ -67,18 +67,19 @@ LESSONS.push({
     start: "step=naive&pixel=164,74",
     text: [
         "Several transparent surfaces are blended one over the other, from the farthest to the " +
-        "nearest, and the order matters: red glass before blue glass is not blue before red. So " +
-        "each *fragment*, the piece of a surface at one pixel, must be blended in its turn.",
-        "The obvious way is the painter's: sort the objects by their distance, and draw the " +
-        "farthest first. [Here](step=naive) four square panes stand through each other on an " +
+        "nearest, and the order matters: red glass in front of blue glass is not blue in front of red. " +
+        "So each *fragment*, the piece of a surface at one pixel, must be blended in its turn.",
+        "The obvious way is the painter's: sort the objects by the distance of their centres, " +
+        "and draw the farthest first. [Here](step=naive) four square panes stand through each other on an " +
         "opaque ground. The first picture is the painter's. In the second each pixel's fragments " +
         "were sorted by themselves. The third marks in red where the two differ.",
         "Where two panes cross, the first is in front on one side of the line, and the second on " +
         "the other. Whichever is drawn first, one side comes out wrong. Cutting objects into " +
         "triangles does not help: triangles cross as well.",
-        "Only at a single pixel there is always a right order: each fragment there has a " +
-        "*depth*, its distance from the eye (stored as a number from 0, near, to 1, far). The " +
-        "rest of the course is about finding that order for every pixel, without sorting " +
+        "At a single pixel, though, there always is a right order: each fragment there has a " +
+        "*depth*, which says how far from the eye it is, as a number from 0, near, to 1, far. " +
+        "(The number is not in proportion to the distance: most of the numbers are spent on " +
+        "what is near, so that far things have depths close to 1.) The rest of the course is about finding that order for every pixel, without sorting " +
         "anything.",
     ],
     question: [
