@@ -128,19 +128,25 @@ LESSONS.push({
         "than the previous one, and no layer is between them.",
         "Why is the previous depth needed? Each pass draws the same surfaces again, and the " +
         "previous depth is all it knows of the passes before. Without it, every pass would find " +
-        "the first layer again. [See what it throws away](step=peel-1-discard): orange is what " +
-        "was taken already, green is what must wait for a later pass, and striped is both.",
-        "And so on: each pass, called a *peel*, takes one layer from every pixel, always the " +
-        "next one behind. A pass reads one depth buffer while it writes another, so there are " +
-        "two, and [they change places](step=peel-1-swap) after each peel. When [a pass finds " +
-        "nothing](step=stop), all layers were taken, and in the right order at every pixel.",
+        "the first layer again. [See what each test throws away](step=peel-1-discard): " +
+        "orange is what was taken already, green is what must wait for a later pass, and " +
+        "striped is some of each.",
+        "And so on: a pass that takes one layer from every pixel, always the next one behind, is " +
+        "called a *peel*. [All layers in space](view=space) show what each one took, and a " +
+        "picture below the depths the same [from above, along the ring's " +
+        "row](step=peel-1-depth&pixel=164,74). After the last peel one more [pass finds " +
+        "nothing](step=stop): so it is known that all layers were taken, in the right order at " +
+        "every pixel.",
+        "One depth buffer cannot do both tests: what a pass compares with must not change while " +
+        "the pass writes the depths that it finds. So there are two, and [they change " +
+        "places](step=peel-1-swap) after each peel.",
         "Opaque surfaces, here the ground, are drawn before all this. What is behind them cannot " +
         "be seen, so a fragment must also be [in front of their depth](step=peel-1-compare), the " +
         "*opaque depth*.",
     ],
     question: [
-        "The number of peels can be limited, to save time. Which is the smallest number that " +
-        "loses nothing here? [Set the passes](view=live&focus=set-passes).",
+        "The number of peels can be limited, to save time; then the last pass, which finds " +
+        "nothing, is saved as well. Which is the smallest number that loses nothing here? [Set the passes](view=live&focus=set-passes).",
     ],
     source: "C. Everitt, Interactive Order-Independent Transparency, NVIDIA, 2001",
     async check() {

@@ -209,8 +209,10 @@ walk.peelDiscard = (k) => app.frame.buffer(`peel.${k}.hidden`) && ({
 
 walk.peelDepth = (k) => ({
     title: "The new depth",
-    text: `The depth of the layer that this peel took, in depth buffer ${walk.side(k)}. It is ` +
-        "farther than the previous one in every pixel; hatched pixels have no more layers.",
+    text: `The depth of the layer that this peel took, in depth buffer ${walk.side(k)}. ` +
+        (k === 0 ? "Hatched pixels have no transparent layer."
+                 : "It is farther than the previous one in every pixel; hatched pixels have no " +
+                   "more layers."),
     code: [7],
     buffers: [`peel.${k}.depth`],
     pictures: () => [
