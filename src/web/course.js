@@ -18,6 +18,21 @@ course.words = (text) => text.split(/(\*[^*]+\*|\[[^\]]+\]\([^)]*\))/).map((part
     return /^\*.*\*$/.test(part) ? app.element("dfn", { textContent: part.slice(1, -1) }) : part;
 });
 
+course.paragraph = (text) => typeof text === "string"
+    ? app.element("p", {}, ...course.words(text)) : course.table(text);
+
+course.table = ({ head, rows }) => {
+    const cells = (texts, tag) => texts.map((text, i) => {
+        const [name, ...code] = text.split(/(?<=: )/);
+        return app.element(i === 0 ? "th" : tag, {}, name,
+                           ...code.map((textContent) => app.element("code", { textContent })));
+    });
+    return app.element("table", {},
+        app.element("thead", {}, app.element("tr", {}, ...cells(head, "th"))),
+        app.element("tbody", {}, ...rows.map((row) =>
+            app.element("tr", {}, ...cells(row, "td")))));
+};
+
 course.guide = (text, parts) => {
     const link = app.element("a", { href: `#${parts}`, textContent: text });
     link.addEventListener("click", async (event) => {
@@ -80,9 +95,9 @@ course.fill = (lesson, titles) => {
         app.element("p", { className: "kicker", textContent:
             `Lesson ${number} of ${titles.length}` }),
         app.element("h2", { textContent: titles[number - 1] }),
-        ...lesson.text.map((text) => app.element("p", {}, ...course.words(text))),
+        ...lesson.text.map(course.paragraph),
         app.element("div", { className: "question" }, app.element("h3", { textContent: "Try it" }),
-            ...lesson.question.map((text) => app.element("p", {}, ...course.words(text))),
+            ...lesson.question.map(course.paragraph),
             course.verdict),
         app.element("p", { className: "note", textContent: `Source: ${lesson.source}` }),
         course.others(number, titles));

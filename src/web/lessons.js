@@ -1,7 +1,7 @@
 /* The lessons of the course, in the order of report/course.c, which has their titles and scenes.
  *
- * start: the address a lesson opens at. text, question: paragraphs (course.words). check(): whether
- * the question is answered as things stand, {right, text}. */
+ * start: the address a lesson opens at. text, question: paragraphs (course.words), or a table's
+ * {head, rows} of texts. check(): whether the question is answered as things stand, {right, text}. */
 "use strict";
 
 const LESSONS = [];
@@ -189,12 +189,16 @@ LESSONS.push({
         "becomes smaller: light ← light + T · source, T ← T · (1 − α). " +
         "The ring is in a column with three squares, α = 0.25 each: [first]" +
         "(step=peel-0-blend&pixel=56,61), [second](step=peel-1-blend&pixel=56,61), [third]" +
-        "(step=peel-2-blend&pixel=56,61). T goes 1, 0.75, 0.5625, and so on.",
-        "Hardware blends with two *blend factors*: one multiplies the new value, one the old. " +
-        "For the light they are T and 1: T dims the new layer by what is in front of it, and 1 " +
-        "keeps what was gathered. For T they are 0 and 1 − α: nothing is added, and the layer's " +
-        "α takes its part of what was left. OpenGL calls them GL_DST_ALPHA, GL_ONE, GL_ZERO and " +
-        "GL_ONE_MINUS_SRC_ALPHA.",
+        "(step=peel-2-blend&pixel=56,61). Before each, T is 1, 0.75 and 0.5625.",
+        "Hardware blends with two *blend factors*: one multiplies the new value (the source), " +
+        "one the old. OpenGL has a name for each:",
+        { head: ["", "new value times", "old value times"],
+          rows: [["light", "T: GL_DST_ALPHA", "1: GL_ONE"],
+                 ["T", "0: GL_ZERO", "1 − α: GL_ONE_MINUS_SRC_ALPHA"]] },
+        "For the light, T dims the new layer by what is in front of it, and 1 keeps what was " +
+        "gathered. For T nothing is added, and the layer's α takes its part of what was left. " +
+        "(T is stored as the fourth channel of the accumulation, which OpenGL calls the " +
+        "destination's alpha.)",
         "Both ways give the same sum. For two layers a and b before a background c: a + " +
         "(1 − α of a) · (b + (1 − α of b) · c). Multiplied out, b counts " +
         "(1 − α of a) times, which is T after a.",
