@@ -36,6 +36,8 @@ course.table = ({ head, rows }) => {
 course.guide = (text, parts) => {
     const link = app.element("a", { href: `#${parts}`, textContent: text });
     link.addEventListener("click", async (event) => {
+        if (document.body.dataset.state !== "ready")
+            return; /* app.follow goes where the address then says */
         event.preventDefault();
         const wanted = Object.fromEntries(parts);
         const focus = wanted.focus;
@@ -71,10 +73,7 @@ course.make = () => {
     course.fold("pixel");
     if (!location.hash)
         history.replaceState(null, "", `#${lesson.start}`);
-    app.on("scene", () => {
-        if (!course.verdict)
-            course.fill(lesson, app.data.lesson.titles);
-    });
+    course.fill(lesson, JSON.parse(document.getElementById("data").textContent).lesson.titles);
     for (const what of ["frame", "pixel", "settings", "edit", "view"])
         app.on(what, course.later);
     live.listeners.push(course.later);
@@ -136,7 +135,7 @@ course.others = (number, titles) => {
 
 course.later = () => {
     clearTimeout(course.timer);
-    course.verdict?.classList.add("late");
+    course.verdict.classList.add("late");
     course.timer = setTimeout(course.check, COURSE_WAIT_MS);
 };
 
@@ -169,8 +168,6 @@ course.layers = (frame, [x, y]) => {
 };
 
 course.check = async () => {
-    if (!course.verdict)
-        return;
     const asked = ++course.asked;
     try {
         const { right, text } = await LESSONS[course.number - 1].check();

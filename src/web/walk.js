@@ -9,7 +9,7 @@ const walk = {};
  * pseudo-code, code: the lines of it that are lit, from 1. pictures(): list of {title, picture} or
  * elements. equation(pixel): an element, or null where there is nothing to say. */
 walk.step = (given) => ({
-    peel: null, part: given.id, buffers: [], lines: walk.PEEL_CODE, code: [], text: "",
+    peel: null, part: given.id, buffers: [], lines: walk.peelCode(), code: [], text: "",
     pictures: () => [], equation: () => null, source: "", ...given });
 
 walk.RAPETTA = "L. Rapetta, OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling";
@@ -32,6 +32,17 @@ walk.PEEL_CODE = [
     "final \u2190 accum + T \u00b7 background",
     "display \u2190 (final / (final + 1)) ^ (1/2.2)",
 ];
+
+/* Of the method forward, with the same steps in the same lines. */
+walk.FORWARD_CODE = walk.PEEL_CODE.map((line, i) => ({
+    0: "draw the opaque surfaces, lit",
+    6: "    light it; keep the nearest, store its colour",
+    8: "  the layer: source \u2190 (stored colour, \u03b1)",
+    12: "blend the lit opaque surfaces likewise",
+})[i] ?? line);
+
+walk.isForward = () => app.choice("method") === "forward";
+walk.peelCode = () => walk.isForward() ? walk.FORWARD_CODE : walk.PEEL_CODE;
 
 /* ---- numbers in equations ---- */
 
@@ -243,8 +254,12 @@ walk.GBUFFER = { normal: "Normal", position: "Position", diffuse: "Base colour",
 walk.peelGBuffer = (k) => {
     const has = Object.keys(walk.GBUFFER).filter((what) => app.frame.buffer(`peel.${k}.${what}`));
     return {
-        title: "The layer's G-buffer",
-        text: "Of the fragments that stay, the same properties are stored as of the opaque " +
+        title: walk.isForward() ? "The layer's colour, lit as it was drawn" : "The layer's G-buffer",
+        text: walk.isForward()
+            ? "A fragment is lit when it is drawn, before it is known whether it stays. Of those " +
+              "that stay only the colour is stored, multiplied by \u03b1, and \u03b1 as its fourth " +
+              "channel."
+            : "Of the fragments that stay, the same properties are stored as of the opaque " +
             "surfaces. The fourth channel of the base colour is the opacity, \u03b1: the part of the " +
             "light from behind that the surface keeps from us.",
         code: [7],
@@ -260,7 +275,10 @@ walk.peelGBuffer = (k) => {
 
 walk.peelLight = (k) => app.frame.buffer(`peel.${k}.source`) && ({
     title: "The lit layer, premultiplied",
-    text: "One pass over the picture lights the layer from its G-buffer, once for each pixel. " +
+    text: walk.isForward()
+        ? "The stored colour is what will be blended. It was multiplied by \u03b1: a premultiplied " +
+          "colour is the light that the surface itself sends to the eye."
+        : "One pass over the picture lights the layer from its G-buffer, once for each pixel. " +
         "What will be blended is the colour multiplied by \u03b1, and \u03b1 beside it: a " +
         "premultiplied colour is the light that the surface itself sends to the eye.",
     code: [9],
@@ -350,7 +368,7 @@ walk.PARTS = [["compare", walk.peelCompare], ["discard", walk.peelDiscard],
               ["depth", walk.peelDepth], ["gbuffer", walk.peelGBuffer],
               ["light", walk.peelLight], ["blend", walk.peelBlend], ["swap", walk.peelSwap]];
 
-walk.peels = (parts = walk.PARTS, lines = walk.PEEL_CODE) => {
+walk.peels = (parts = walk.PARTS, lines = walk.peelCode()) => {
     const all = [];
     for (let k = 0; k < app.frame.peels; k++)
         for (const [part, make] of parts) {
