@@ -273,6 +273,22 @@ LESSONS.push({
 
 /* ---- 6: numbers ---- */
 
+const LESSON_6_DUAL = " finds the nearest and the farthest in a buffer of its own, always of 32-bit " +
+    "floats: with those no two fragments of a pixel are equal here. The method peel-id goes " +
+    "further: it would lose none even then, as it compares the triangles' numbers.";
+
+/* Why an exact method loses none. */
+const LESSON_6_REASONS = {
+    "peel-id": "peel-id compares the number of the triangle where depths are equal, so that each " +
+        "fragment has its place, and none is lost.",
+    "dual": `dual${LESSON_6_DUAL}`,
+    "forward-dual": `forward-dual${LESSON_6_DUAL}`,
+    "linked-list": "linked-list keeps every fragment and takes none by a test, so none can be " +
+        "lost. It sorts those of equal depth by the number of the triangle, as peel-id does.",
+    "peel": "peel loses none here now, but only because no two depths are equal.",
+    "forward": "forward loses none here now, but only because no two depths are equal.",
+};
+
 LESSONS.push({
     start: "step=peel-1-compare&pixel=none",
     text: [
@@ -288,12 +304,13 @@ LESSONS.push({
         "why this project compares bits: ref, the renderer in this page, with gl, a graphics " +
         "driver; and [both with the truth](step=truth), which sorts exactly and computes in " +
         "double precision.",
-        "The accumulation has a *format* too. With 8 bits a channel (rgba8) every blend rounds " +
-        "to one of 256 steps, and after many layers it is [seen](step=truth). In the live view, " +
-        "under More, all formats can be changed.",
+        "The accumulation has a *format* too. With 8 bits a channel every blend rounds to one of " +
+        "256 steps: [set it to rgba8](step=display&accum=rgba8), compare the values at a pixel, " +
+        "and [back to 32 bits](step=display&accum=rgba32f). In the live view, under More, all " +
+        "formats can be changed.",
     ],
     question: [
-        "[Set the depth format to d16](view=live&focus=set-depth) and see, in the live view's " +
+        "[Open the depth format](view=live&focus=set-depth), set it to d16, and see, in the live view's " +
         "figures, that fragments are lost to ties. Then, with depths still in 16 bits, lose " +
         "none, and keep the image exact. (Two depths may be equal; what else does a fragment " +
         "have that no other has? Some [method](view=live&focus=set-method) may use it.)",
@@ -312,10 +329,6 @@ LESSONS.push({
                 "how its image differs."] };
         if (frame.lost_to_ties > 0)
             return { right: false, text: ["With d16, ", lost, " fragments are lost to ties."] };
-        return { right: true, text: [method === "peel-id"
-            ? "peel-id compares the number of the triangle where depths are equal, so that each " +
-              "fragment has its place, and none is lost."
-            : "No fragment is lost to ties now. The method peel-id is made for this: where " +
-              "depths are equal it compares the number of the triangle."] };
+        return { right: true, text: LESSON_6_REASONS[method] };
     },
 });
