@@ -123,7 +123,7 @@ walk.naive = () => walk.step({
     code: [1, 4],
     pictures: () => [walk.later(walk.other("painter"), ({ display }) => {
         const other = draw.differing(display, app.frame.buffer("display"));
-        return [figure.make("Painter: objects sorted and blended", draw.bytes({ ...display,
+        return [figure.make("Painter: objects sorted", draw.bytes({ ...display,
                     name: "painter.display" })),
                 figure.make("Each pixel's fragments in order", draw.bytes(app.frame.buffer("display"))),
                 figure.make("Where they differ", other),
@@ -358,7 +358,7 @@ walk.swap = (k) => {
         : figure.make(`Buffer ${walk.side(peel)}: layer ${peel + 1}`,
                       draw.depth(app.frame.buffer(`peel.${peel}.depth`))));
     shown.forEach((picture, i) => picture.prepend(app.element("div", {
-        className: `role ${i === 0 ? "left" : "right"}` }, app.element("span", {
+        className: `role ${i === 0 ? "left" : "right"}${i === k % 2 ? "" : " next"}` }, app.element("span", {
             textContent: i === k % 2 ? "previous depth" : "cleared and written next" }))));
     return app.element("div", { className: "swap" },
         app.element("div", { className: "pictures" }, ...shown));
