@@ -25,7 +25,8 @@ course.table = ({ head, rows }) => {
     const cells = (texts, tag) => texts.map((text, i) => {
         const [name, ...code] = text.split(/(?<=: )/);
         return app.element(i === 0 ? "th" : tag, {}, name,
-                           ...code.map((textContent) => app.element("code", { textContent })));
+                           ...code.map((long) => app.element("code", {}, ...long.split(/(?<=_)/)
+                               .flatMap((part) => [part, app.element("wbr", {})]))));
     });
     return app.element("table", {},
         app.element("thead", {}, app.element("tr", {}, ...cells(head, "th"))),

@@ -230,7 +230,7 @@ LESSONS.push({
 /* ---- 5: deferring ---- */
 
 LESSONS.push({
-    start: "step=peel-0-gbuffer&pixel=131,109",
+    start: "step=peel-0-gbuffer&pixel=160,90",
     text: [
         "So far a fragment had a colour. To find it, the surface is *lit*: for every light, how " +
         "much of it the surface reflects towards the eye. That is the expensive part, about a " +
