@@ -267,8 +267,8 @@ walk.peelGBuffer = (k) => {
         pictures: () => has.flatMap((what) => walk.show(`peel.${k}.${what}`, walk.GBUFFER[what])),
         equation: (pixel) => !walk.hasFragment(`peel.${k}`, pixel)
             ? walk.says("This peel found nothing at this pixel.")
-            : app.frame.buffer(`peel.${k}.diffuse`) &&
-              walk.formula`\u03b1 = ${walk.number(`peel.${k}.diffuse`, pixel, 3)}`,
+            : walk.formula`\u03b1 = ${walk.number(`peel.${k}.${has.includes("diffuse")
+                ? "diffuse" : "color"}`, pixel, 3)}`,
         source: walk.RAPETTA,
     };
 };
