@@ -132,9 +132,9 @@ LESSONS.push({
         "orange is what was taken already, green is what must wait for a later pass, and " +
         "striped is some of each.",
         "And so on: a pass that takes one layer from every pixel, always the next one behind, is " +
-        "called a *peel*. [All layers in space](view=space) show what each one took, and a " +
-        "picture below the depths the same [from above, along the ring's " +
-        "row](step=peel-1-depth&pixel=164,74). After the last peel one more [pass finds " +
+        "called a *peel*. [Layers in space](view=space) shows what each of them took; the last " +
+        "picture [of this step](step=peel-1-depth&pixel=164,74) shows the depths of the ring's " +
+        "row, seen from above. After the last peel one more [pass finds " +
         "nothing](step=stop): so it is known that all layers were taken, in the right order at " +
         "every pixel.",
         "One depth buffer cannot do both tests: what a pass compares with must not change while " +
