@@ -3,7 +3,7 @@
 "use strict";
 
 const course = { number: Number(document.body.dataset.lesson ?? 0), section: null, verdict: null,
-                 timer: null, asked: 0 };
+                 strip: null, timer: null, asked: 0 };
 
 const COURSE_WAIT_MS = 250; /* after the last change */
 
@@ -18,9 +18,27 @@ course.words = (text) => text.split(/(\*[^*]+\*|\[[^\]]+\]\([^)]*\))/).map((part
     return /^\*.*\*$/.test(part) ? app.element("dfn", { textContent: part.slice(1, -1) }) : part;
 });
 
+course.paragraph = (text) => typeof text === "string"
+    ? app.element("p", {}, ...course.words(text)) : course.table(text);
+
+course.table = ({ head, rows }) => {
+    const cells = (texts, tag) => texts.map((text, i) => {
+        const [name, ...code] = text.split(/(?<=: )/);
+        return app.element(i === 0 ? "th" : tag, {}, name,
+                           ...code.map((long) => app.element("code", {}, ...long.split(/(?<=_)/)
+                               .flatMap((part) => [part, app.element("wbr", {})]))));
+    });
+    return app.element("table", {},
+        app.element("thead", {}, app.element("tr", {}, ...cells(head, "th"))),
+        app.element("tbody", {}, ...rows.map((row) =>
+            app.element("tr", {}, ...cells(row, "td")))));
+};
+
 course.guide = (text, parts) => {
     const link = app.element("a", { href: `#${parts}`, textContent: text });
     link.addEventListener("click", async (event) => {
+        if (document.body.dataset.state !== "ready")
+            return; /* app.follow goes where the address then says */
         event.preventDefault();
         const wanted = Object.fromEntries(parts);
         const focus = wanted.focus;
@@ -52,15 +70,21 @@ course.make = () => {
     course.section = app.element("section", { id: "lesson" });
     course.section.setAttribute("aria-label", "The lesson");
     document.body.prepend(course.section);
+    course.fold("methods-panel");
+    course.fold("pixel");
     if (!location.hash)
         history.replaceState(null, "", `#${lesson.start}`);
-    app.on("scene", () => {
-        if (!course.verdict)
-            course.fill(lesson, app.data.lesson.titles);
-    });
+    course.fill(lesson, JSON.parse(document.getElementById("data").textContent).lesson.titles);
     for (const what of ["frame", "pixel", "settings", "edit", "view"])
         app.on(what, course.later);
     live.listeners.push(course.later);
+};
+
+/* What the lessons do not speak of is folded, under its heading. */
+course.fold = (id) => {
+    const section = document.getElementById(id), [heading, ...rest] = section.children;
+    section.append(app.element("details", { className: "folded" },
+        app.element("summary", {}, heading), ...rest));
 };
 
 course.fill = (lesson, titles) => {
@@ -71,12 +95,29 @@ course.fill = (lesson, titles) => {
         app.element("p", { className: "kicker", textContent:
             `Lesson ${number} of ${titles.length}` }),
         app.element("h2", { textContent: titles[number - 1] }),
-        ...lesson.text.map((text) => app.element("p", {}, ...course.words(text))),
+        ...lesson.text.map(course.paragraph),
         app.element("div", { className: "question" }, app.element("h3", { textContent: "Try it" }),
-            ...lesson.question.map((text) => app.element("p", {}, ...course.words(text))),
+            ...lesson.question.map(course.paragraph),
             course.verdict),
         app.element("p", { className: "note", textContent: `Source: ${lesson.source}` }),
         course.others(number, titles));
+    course.makeStrip();
+};
+
+/* The verdict again, at the edge of the window: from when the question was first seen, while it
+ * is out of view. A screen reader has the verdict itself. */
+course.makeStrip = () => {
+    course.strip = app.element("div", { id: "lesson-strip", hidden: true });
+    course.strip.setAttribute("aria-hidden", "true");
+    course.strip.addEventListener("click", () =>
+        course.verdict.scrollIntoView({ block: "center" }));
+    document.body.append(course.strip);
+    const question = course.verdict.parentElement;
+    let met = false;
+    new IntersectionObserver(([{ isIntersecting }]) => {
+        met ||= isIntersecting;
+        course.strip.hidden = isIntersecting || !met;
+    }).observe(question);
 };
 
 course.others = (number, titles) => {
@@ -95,7 +136,7 @@ course.others = (number, titles) => {
 
 course.later = () => {
     clearTimeout(course.timer);
-    course.verdict?.classList.add("late");
+    course.verdict.classList.add("late");
     course.timer = setTimeout(course.check, COURSE_WAIT_MS);
 };
 
@@ -128,8 +169,6 @@ course.layers = (frame, [x, y]) => {
 };
 
 course.check = async () => {
-    if (!course.verdict)
-        return;
     const asked = ++course.asked;
     try {
         const { right, text } = await LESSONS[course.number - 1].check();
@@ -139,13 +178,23 @@ course.check = async () => {
         course.verdict.replaceChildren(
             app.element("strong", { textContent: right ? "\u2713 Right. " : "Not yet. " }),
             ...[text].flat());
+        course.strip.className = course.verdict.className;
+        course.strip.textContent = course.verdict.textContent;
     } catch (error) {
         app.say(error.message);
     }
 };
 
-/* A number in a verdict. */
-course.value = (value, what, format = "r32f") => app.numberElement(value, format, what);
+/* Whether a number is the wanted one, in the digits that are shown. */
+course.near = (value, wanted) => app.rounded(value) === app.rounded(wanted);
+
+/* A number in a verdict, of four digits; what it is exactly is in its title. */
+course.value = (value, what, format = "r32f") => {
+    const element = app.numberElement(value, format, what);
+    if (format !== "count")
+        element.textContent = app.rounded(app.stored(value, format));
+    return element;
+};
 
 if (course.number > 0)
     course.make();

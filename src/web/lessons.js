@@ -1,7 +1,7 @@
 /* The lessons of the course, in the order of report/course.c, which has their titles and scenes.
  *
- * start: the address a lesson opens at. text, question: paragraphs (course.words). check(): whether
- * the question is answered as things stand, {right, text}. */
+ * start: the address a lesson opens at. text, question: paragraphs (course.words), or a table's
+ * {head, rows} of texts. check(): whether the question is answered as things stand, {right, text}. */
 "use strict";
 
 const LESSONS = [];
@@ -30,8 +30,12 @@ LESSONS.push({
         "*source*.",
         "What the eye gets is a sum: source + (1 − α) · light from behind. To put " +
         "one thing over another like this is to *blend* them. The part that still comes through, " +
-        "here 1 − α, is called *transmittance*, T. [After the square is blended]" +
-        "(step=peel-0-blend&pixel=18,61) the page shows T = 0.75 for this pixel.",
+        "here 1 − α, is called *transmittance*, T. At the ring, in red: 0.215 from the " +
+        "square, + 0.75 · 0.817 from the wall, = 0.828 to the eye.",
+        "The page adds in another order: [first the square](step=peel-0-blend&pixel=18,61), to " +
+        "nothing, which leaves T = 0.75; and later, as the last of all, [the wall]" +
+        "(step=light&pixel=18,61), times T. The sum is the same; lesson 4 tells why it is done " +
+        "so.",
     ],
     question: [
         "Make the square at the ring let exactly a tenth of the light through. Its material is " +
@@ -43,11 +47,14 @@ LESSONS.push({
         const frame = await course.frame(), pixel = [18, 61];
         const through = course.at(frame, "peel.0.accum", pixel, 3);
         const number = course.value(through, "peel.0.accum.a");
-        if (Math.abs(through - 0.1) < 0.002)
+        if (edits.mode(4) === "opaque")
+            return { right: false, text: "At α = 1 the square is opaque: it is drawn with the " +
+                "wall and no longer blended, and nothing comes through it." };
+        if (course.near(through, 0.1))
             return { right: true, text: ["T is ", number, ". The square keeps α = 0.9 and " +
                 "lets 1 − 0.9 through; its source has become brighter, as it is now " +
                 "multiplied by 0.9."] };
-        if (Math.abs(through - 0.9) < 0.02)
+        if (course.near(through, 0.9))
             return { right: false, text: ["T is ", number, ". α is what the square keeps, " +
                 "not what it lets through."] };
         return { right: false, text: ["At the ring T is ", number, "; a tenth is 0.1."] };
@@ -60,18 +67,19 @@ LESSONS.push({
     start: "step=naive&pixel=164,74",
     text: [
         "Several transparent surfaces are blended one over the other, from the farthest to the " +
-        "nearest, and the order matters: red glass before blue glass is not blue before red. So " +
-        "each *fragment*, the piece of a surface at one pixel, must be blended in its turn.",
-        "The obvious way is the painter's: sort the objects by their distance, and draw the " +
-        "farthest first. [Here](step=naive) four square panes stand through each other on an " +
+        "nearest, and the order matters: red glass in front of blue glass is not blue in front of red. " +
+        "So each *fragment*, the piece of a surface at one pixel, must be blended in its turn.",
+        "The obvious way is the painter's: sort the objects by the distance of their centres, " +
+        "and draw the farthest first. [Here](step=naive) four square panes stand through each other on an " +
         "opaque ground. The first picture is the painter's. In the second each pixel's fragments " +
         "were sorted by themselves. The third marks in red where the two differ.",
         "Where two panes cross, the first is in front on one side of the line, and the second on " +
         "the other. Whichever is drawn first, one side comes out wrong. Cutting objects into " +
         "triangles does not help: triangles cross as well.",
-        "Only at a single pixel there is always a right order: each fragment there has a " +
-        "*depth*, its distance from the eye (stored as a number from 0, near, to 1, far). The " +
-        "rest of the course is about finding that order for every pixel, without sorting " +
+        "At a single pixel, though, there always is a right order: each fragment there has a " +
+        "*depth*, which says how far from the eye it is, as a number from 0, near, to 1, far. " +
+        "(The number is not in proportion to the distance: most of the numbers are spent on " +
+        "what is near, so that far things have depths close to 1.) The rest of the course is about finding that order for every pixel, without sorting " +
         "anything.",
     ],
     question: [
@@ -120,38 +128,48 @@ LESSONS.push({
         "than the previous one, and no layer is between them.",
         "Why is the previous depth needed? Each pass draws the same surfaces again, and the " +
         "previous depth is all it knows of the passes before. Without it, every pass would find " +
-        "the first layer again. [See what it throws away](step=peel-1-discard): orange is what " +
-        "was taken already, green is what must wait for a later pass, and striped is both.",
-        "And so on: each pass, called a *peel*, takes one layer from every pixel, always the " +
-        "next one behind. A pass reads one depth buffer while it writes another, so there are " +
-        "two, and [they change places](step=peel-1-swap) after each peel. When [a pass finds " +
-        "nothing](step=stop), all layers were taken, and in the right order at every pixel.",
+        "the first layer again. [See what each test throws away](step=peel-1-discard): " +
+        "orange is what was taken already, green is what must wait for a later pass, and " +
+        "striped is some of each.",
+        "And so on: a pass that takes one layer from every pixel, always the next one behind, is " +
+        "called a *peel*. [Layers in space](view=space) shows what each of them took; the last " +
+        "picture [of this step](step=peel-1-depth&pixel=164,74) shows the depths of the ring's " +
+        "row, seen from above. After the last peel one more [pass finds " +
+        "nothing](step=stop): so it is known that all layers were taken, in the right order at " +
+        "every pixel.",
+        "One depth buffer cannot do both tests: what a pass compares with must not change while " +
+        "the pass writes the depths that it finds. So there are two, and [they change " +
+        "places](step=peel-1-swap) after each peel.",
         "Opaque surfaces, here the ground, are drawn before all this. What is behind them cannot " +
         "be seen, so a fragment must also be [in front of their depth](step=peel-1-compare), the " +
         "*opaque depth*.",
     ],
     question: [
-        "The number of peels can be limited, to save time. Which is the smallest number that " +
-        "loses nothing here? [Set the passes](view=live&focus=set-passes).",
+        "The number of peels can be limited, to save time; then the last pass, which finds " +
+        "nothing, is saved as well. Which is the smallest number that loses nothing here? [Set the passes](view=live&focus=set-passes).",
     ],
     source: "C. Everitt, Interactive Order-Independent Transparency, NVIDIA, 2001",
     async check() {
         const frame = await course.figures(), { passes } = app.settings;
         const count = (value, what) => course.value(value, `frame.${what}`, "count");
         const lost = frame.lost_to_pass_limit;
+        if (!["peel", "peel-id", "forward"].includes(app.choice("method")))
+            return { right: false, text: `The method ${app.choice("method")} does not take one ` +
+                "layer in each pass: choose peel." };
         if (passes === 0)
             return { right: false, text: "Passes is automatic now: the program goes on until a " +
                 "pass finds nothing. Set a number." };
         if (lost > 0)
             return { right: false, text: ["With ", count(frame.peels, "peels"),
                 frame.peels === 1 ? " peel " : " peels ",
-                count(lost, "lost_to_pass_limit"), " fragments are never reached: they are " +
-                "behind all layers that were taken."] };
+                count(lost, "lost_to_pass_limit"),
+                lost === 1 ? " fragment is" : " fragments are", " never reached, behind all " +
+                "layers that were taken."] };
         if (frame.peels < passes)
             return { right: false, text: ["Nothing is lost, but only ", count(frame.peels, "peels"),
-                " peels found anything: fewer will do."] };
+                frame.peels === 1 ? " peel" : " peels", " found anything: fewer will do."] };
         return { right: true, text: ["Some pixels have ", count(frame.max_layers, "max_layers"),
-            "layers, and each peel takes one of them: the nearest behind the previous depth. " +
+            " layers, and each peel takes one of them: the nearest behind the previous depth. " +
             "With one peel less the last layer would be lost."] };
     },
 });
@@ -171,18 +189,22 @@ LESSONS.push({
         "becomes smaller: light ← light + T · source, T ← T · (1 − α). " +
         "The ring is in a column with three squares, α = 0.25 each: [first]" +
         "(step=peel-0-blend&pixel=56,61), [second](step=peel-1-blend&pixel=56,61), [third]" +
-        "(step=peel-2-blend&pixel=56,61). T goes 1, 0.75, 0.5625, and so on.",
-        "Hardware blends with two *blend factors*: one multiplies the new value, one the old. " +
-        "For the light they are T and 1: T dims the new layer by what is in front of it, and 1 " +
-        "keeps what was gathered. For T they are 0 and 1 − α: nothing is added, and the layer's " +
-        "α takes its part of what was left. OpenGL calls them GL_DST_ALPHA, GL_ONE, GL_ZERO and " +
-        "GL_ONE_MINUS_SRC_ALPHA.",
+        "(step=peel-2-blend&pixel=56,61). Before each, T is 1, 0.75 and 0.5625.",
+        "Hardware blends with two *blend factors*: one multiplies the new value (the source), " +
+        "one the old. OpenGL has a name for each:",
+        { head: ["", "new value times", "old value times"],
+          rows: [["light", "T: GL_DST_ALPHA", "1: GL_ONE"],
+                 ["T", "0: GL_ZERO", "1 − α: GL_ONE_MINUS_SRC_ALPHA"]] },
+        "For the light, T dims the new layer by what is in front of it, and 1 keeps what was " +
+        "gathered. For T nothing is added, and the layer's α takes its part of what was left. " +
+        "(T is stored as the fourth channel of the accumulation, which OpenGL calls the " +
+        "destination's alpha.)",
         "Both ways give the same sum. For two layers a and b before a background c: a + " +
         "(1 − α of a) · (b + (1 − α of b) · c). Multiplied out, b counts " +
         "(1 − α of a) times, which is T after a.",
     ],
     question: [
-        "After the three squares at the ring, T is 0.421875. [Set their " +
+        "After the three squares at the ring, T is 0.4219. [Set their " +
         "alpha](view=live&focus=material-4-alpha) so that an eighth of the light comes through " +
         "all three.",
     ],
@@ -193,7 +215,10 @@ LESSONS.push({
         const name = `peel.${Math.min(2, frame.peels - 1)}.accum`;
         const through = course.at(frame, name, pixel, 3);
         const number = course.value(through, `${name}.a`);
-        if (Math.abs(through - 0.125) < 0.002)
+        if (edits.mode(4) === "opaque")
+            return { right: false, text: "At α = 1 the squares are opaque: they are drawn with " +
+                "the wall and no longer blended, and nothing comes through." };
+        if (course.near(through, 0.125))
             return { right: true, text: ["T is ", number, ". With α = 0.5 each square halves " +
                 "what is left: 1 · 0.5 · 0.5 · 0.5. The third one counts only a " +
                 "quarter of its own light."] };
@@ -205,7 +230,7 @@ LESSONS.push({
 /* ---- 5: deferring ---- */
 
 LESSONS.push({
-    start: "step=peel-0-gbuffer&pixel=none",
+    start: "step=peel-0-gbuffer&pixel=160,90",
     text: [
         "So far a fragment had a colour. To find it, the surface is *lit*: for every light, how " +
         "much of it the surface reflects towards the eye. That is the expensive part, about a " +
@@ -248,6 +273,22 @@ LESSONS.push({
 
 /* ---- 6: numbers ---- */
 
+const LESSON_6_DUAL = " finds the nearest and the farthest in a buffer of its own, always of 32-bit " +
+    "floats: with those no two fragments of a pixel are equal here. The method peel-id goes " +
+    "further: it would lose none even then, as it compares the triangles' numbers.";
+
+/* Why an exact method loses none. */
+const LESSON_6_REASONS = {
+    "peel-id": "peel-id compares the number of the triangle where depths are equal, so that each " +
+        "fragment has its place, and none is lost.",
+    "dual": `dual${LESSON_6_DUAL}`,
+    "forward-dual": `forward-dual${LESSON_6_DUAL}`,
+    "linked-list": "linked-list keeps every fragment and takes none by a test, so none can be " +
+        "lost. It sorts those of equal depth by the number of the triangle, as peel-id does.",
+    "peel": "peel loses none here now, but only because no two depths are equal.",
+    "forward": "forward loses none here now, but only because no two depths are equal.",
+};
+
 LESSONS.push({
     start: "step=peel-1-compare&pixel=none",
     text: [
@@ -263,12 +304,13 @@ LESSONS.push({
         "why this project compares bits: ref, the renderer in this page, with gl, a graphics " +
         "driver; and [both with the truth](step=truth), which sorts exactly and computes in " +
         "double precision.",
-        "The accumulation has a *format* too. With 8 bits a channel (rgba8) every blend rounds " +
-        "to one of 256 steps, and after many layers it is [seen](step=truth). In the live view, " +
-        "under More, all formats can be changed.",
+        "The accumulation has a *format* too. With 8 bits a channel every blend rounds to one of " +
+        "256 steps: [set it to rgba8](step=display&accum=rgba8), compare the values at a pixel, " +
+        "and [back to 32 bits](step=display&accum=rgba32f). In the live view, under More, all " +
+        "formats can be changed.",
     ],
     question: [
-        "[Set the depth format to d16](view=live&focus=set-depth) and see, in the live view's " +
+        "[Open the depth format](view=live&focus=set-depth), set it to d16, and see, in the live view's " +
         "figures, that fragments are lost to ties. Then, with depths still in 16 bits, lose " +
         "none, and keep the image exact. (Two depths may be equal; what else does a fragment " +
         "have that no other has? Some [method](view=live&focus=set-method) may use it.)",
@@ -287,10 +329,6 @@ LESSONS.push({
                 "how its image differs."] };
         if (frame.lost_to_ties > 0)
             return { right: false, text: ["With d16, ", lost, " fragments are lost to ties."] };
-        return { right: true, text: [method === "peel-id"
-            ? "peel-id compares the number of the triangle where depths are equal, so that each " +
-              "fragment has its place, and none is lost."
-            : "No fragment is lost to ties now. The method peel-id is made for this: where " +
-              "depths are equal it compares the number of the triangle."] };
+        return { right: true, text: LESSON_6_REASONS[method] };
     },
 });

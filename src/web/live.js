@@ -92,10 +92,14 @@ live.sizes = ([width, height], [from], shown) => {
     return sizes.map((scale) => [Math.round(width * scale), Math.round(height * scale)]);
 };
 
+/* In pixels. A lesson judges by the steps' frame, so its figures must be of that size too. */
+live.shownWidth = () => app.data.lesson ? app.settings.size[0]
+                                        : live.canvas.clientWidth * (devicePixelRatio || 1);
+
 live.refine = async () => {
     if (app.view !== "live" || live.wanted || live.busy || live.turning)
         return;
-    const shown = live.canvas.clientWidth * (devicePixelRatio || 1);
+    const shown = live.shownWidth();
     const sizes = live.sizes(app.settings.size, live.size(), shown);
     if (sizes.length === 0)
         return;

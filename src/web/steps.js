@@ -96,6 +96,8 @@ steps.showPictures = (step) => {
     const made = [...step.pictures(), ...sides.pictures(step)].map((one) => one instanceof Node ? one
                                               : figure.make(one.title, one.picture));
     const count = step.kind === "naive" ? 3 : Math.min(made.length, 4);
+    steps.at("pictures").closest(".step").classList.toggle(
+        "broad", step.kind === "naive" || step.kind === "truth");
     steps.at("pictures").className = `pictures count-${count}`;
     steps.at("pictures").replaceChildren(...made);
     figure.update();

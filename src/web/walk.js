@@ -9,7 +9,7 @@ const walk = {};
  * pseudo-code, code: the lines of it that are lit, from 1. pictures(): list of {title, picture} or
  * elements. equation(pixel): an element, or null where there is nothing to say. */
 walk.step = (given) => ({
-    peel: null, part: given.id, buffers: [], lines: walk.PEEL_CODE, code: [], text: "",
+    peel: null, part: given.id, buffers: [], lines: walk.peelCode(), code: [], text: "",
     pictures: () => [], equation: () => null, source: "", ...given });
 
 walk.RAPETTA = "L. Rapetta, OpenGL 4.6 Deferred Renderer with Deferred Depth Peeling";
@@ -32,6 +32,17 @@ walk.PEEL_CODE = [
     "final \u2190 accum + T \u00b7 background",
     "display \u2190 (final / (final + 1)) ^ (1/2.2)",
 ];
+
+/* Of the method forward, with the same steps in the same lines. */
+walk.FORWARD_CODE = walk.PEEL_CODE.map((line, i) => ({
+    0: "draw the opaque surfaces, lit",
+    6: "    light it; keep the nearest, store its colour",
+    8: "  the layer: source \u2190 (stored colour, \u03b1)",
+    12: "blend the lit opaque surfaces likewise",
+})[i] ?? line);
+
+walk.isForward = () => app.choice("method") === "forward";
+walk.peelCode = () => walk.isForward() ? walk.FORWARD_CODE : walk.PEEL_CODE;
 
 /* ---- numbers in equations ---- */
 
@@ -112,7 +123,7 @@ walk.naive = () => walk.step({
     code: [1, 4],
     pictures: () => [walk.later(walk.other("painter"), ({ display }) => {
         const other = draw.differing(display, app.frame.buffer("display"));
-        return [figure.make("Painter: objects sorted and blended", draw.bytes({ ...display,
+        return [figure.make("Painter: objects sorted", draw.bytes({ ...display,
                     name: "painter.display" })),
                 figure.make("Each pixel's fragments in order", draw.bytes(app.frame.buffer("display"))),
                 figure.make("Where they differ", other),
@@ -209,8 +220,10 @@ walk.peelDiscard = (k) => app.frame.buffer(`peel.${k}.hidden`) && ({
 
 walk.peelDepth = (k) => ({
     title: "The new depth",
-    text: `The depth of the layer that this peel took, in depth buffer ${walk.side(k)}. It is ` +
-        "farther than the previous one in every pixel; hatched pixels have no more layers.",
+    text: `The depth of the layer that this peel took, in depth buffer ${walk.side(k)}. ` +
+        (k === 0 ? "Hatched pixels have no transparent layer."
+                 : "It is farther than the previous one in every pixel; hatched pixels have no " +
+                   "more layers."),
     code: [7],
     buffers: [`peel.${k}.depth`],
     pictures: () => [
@@ -241,8 +254,12 @@ walk.GBUFFER = { normal: "Normal", position: "Position", diffuse: "Base colour",
 walk.peelGBuffer = (k) => {
     const has = Object.keys(walk.GBUFFER).filter((what) => app.frame.buffer(`peel.${k}.${what}`));
     return {
-        title: "The layer's G-buffer",
-        text: "Of the fragments that stay, the same properties are stored as of the opaque " +
+        title: walk.isForward() ? "The layer's colour, lit as it was drawn" : "The layer's G-buffer",
+        text: walk.isForward()
+            ? "A fragment is lit when it is drawn, before it is known whether it stays. Of those " +
+              "that stay only the colour is stored, multiplied by \u03b1, and \u03b1 as its fourth " +
+              "channel."
+            : "Of the fragments that stay, the same properties are stored as of the opaque " +
             "surfaces. The fourth channel of the base colour is the opacity, \u03b1: the part of the " +
             "light from behind that the surface keeps from us.",
         code: [7],
@@ -250,15 +267,18 @@ walk.peelGBuffer = (k) => {
         pictures: () => has.flatMap((what) => walk.show(`peel.${k}.${what}`, walk.GBUFFER[what])),
         equation: (pixel) => !walk.hasFragment(`peel.${k}`, pixel)
             ? walk.says("This peel found nothing at this pixel.")
-            : app.frame.buffer(`peel.${k}.diffuse`) &&
-              walk.formula`\u03b1 = ${walk.number(`peel.${k}.diffuse`, pixel, 3)}`,
+            : walk.formula`\u03b1 = ${walk.number(`peel.${k}.${has.includes("diffuse")
+                ? "diffuse" : "color"}`, pixel, 3)}`,
         source: walk.RAPETTA,
     };
 };
 
 walk.peelLight = (k) => app.frame.buffer(`peel.${k}.source`) && ({
     title: "The lit layer, premultiplied",
-    text: "One pass over the picture lights the layer from its G-buffer, once for each pixel. " +
+    text: walk.isForward()
+        ? "The stored colour is what will be blended. It was multiplied by \u03b1: a premultiplied " +
+          "colour is the light that the surface itself sends to the eye."
+        : "One pass over the picture lights the layer from its G-buffer, once for each pixel. " +
         "What will be blended is the colour multiplied by \u03b1, and \u03b1 beside it: a " +
         "premultiplied colour is the light that the surface itself sends to the eye.",
     code: [9],
@@ -329,7 +349,7 @@ walk.peelSwap = (k) => ({
     source: walk.EVERITT,
 });
 
-/* Both buffers under their names; the roles move from one to the other. */
+/* Both buffers under their names, and over each its role, which comes from the other. */
 walk.swap = (k) => {
     const shown = [k, k - 1].sort((a, b) => (a + 2) % 2 - (b + 2) % 2).map((peel) => peel < 0
         ? app.element("figure", { className: "picture" }, app.element("figcaption", {},
@@ -337,20 +357,18 @@ walk.swap = (k) => {
             app.element("div", { className: "frame empty" }))
         : figure.make(`Buffer ${walk.side(peel)}: layer ${peel + 1}`,
                       draw.depth(app.frame.buffer(`peel.${peel}.depth`))));
-    const role = (text, left) => app.element("span", {
-        className: `role ${left ? "left" : "right"}`, textContent: text });
-    const even = k % 2 === 0;
+    shown.forEach((picture, i) => picture.prepend(app.element("div", {
+        className: `role ${i === 0 ? "left" : "right"}${i === k % 2 ? "" : " next"}` }, app.element("span", {
+            textContent: i === k % 2 ? "previous depth" : "cleared and written next" }))));
     return app.element("div", { className: "swap" },
-        app.element("div", { className: "roles" }, role("previous depth", even),
-                    role("cleared and written next", !even)),
-        app.element("div", { className: "pictures count-2" }, ...shown));
+        app.element("div", { className: "pictures" }, ...shown));
 };
 
 walk.PARTS = [["compare", walk.peelCompare], ["discard", walk.peelDiscard],
               ["depth", walk.peelDepth], ["gbuffer", walk.peelGBuffer],
               ["light", walk.peelLight], ["blend", walk.peelBlend], ["swap", walk.peelSwap]];
 
-walk.peels = (parts = walk.PARTS, lines = walk.PEEL_CODE) => {
+walk.peels = (parts = walk.PARTS, lines = walk.peelCode()) => {
     const all = [];
     for (let k = 0; k < app.frame.peels; k++)
         for (const [part, make] of parts) {

@@ -10,13 +10,13 @@ walk.stop = () => {
         id: "stop", kind: "peel", group: "Peels", code: [8],
         title: limited ? "The number of peels was limited" : "Nothing is left to peel",
         text: limited
-            ? ["After ", count(peels, "peels"), " peels the limit was reached, and ",
-               count(lost, "lost_to_pass_limit"), " fragments were never taken. The light they " +
-               "would have added is at most what still came through in front of them: a " +
+            ? ["After ", count(peels, "peels"), peels === 1 ? " peel" : " peels", " the limit was reached, and ",
+               count(lost, "lost_to_pass_limit"), lost === 1 ? " fragment was" : " fragments were",
+               " never taken. The light they " + "would have added is at most what still came through in front of them: a " +
                "transmittance of up to ", app.numberElement(residual, "double", "frame.residual_max"),
                "."]
             : ["One more geometry pass would keep no fragment: every transparent surface was taken " +
-               "by one of the ", count(peels, "peels"), " peels, in ",
+               "by one of the ", count(peels, "peels"), peels === 1 ? " peel, in " : " peels, in ",
                count(passes, "geometry_passes"), " geometry passes."],
         pictures: () => [{ title: "Layers in each pixel", picture: walk.layerCounts() }],
         equation: ([x, y]) => walk.formula`layers here: ${app.numberElement(
@@ -40,8 +40,12 @@ walk.layerCounts = () => draw.counts(walk.layers(), walk.layers().data, "frame.l
 /* before: the accumulation's name before the opaque surfaces, null: cleared. */
 walk.light = (before, lines, code) => walk.step({
     id: "light", kind: "light", group: "Opaque lighting pass", lines, code,
-    title: "Light the opaque surfaces and blend them under",
-    text: "The opaque surfaces were waiting in their G-buffer. Now they are lit, once, and blended " +
+    title: walk.isForward() ? "Blend the opaque surfaces under"
+                            : "Light the opaque surfaces and blend them under",
+    text: walk.isForward()
+        ? "The opaque surfaces were lit as they were drawn. Now they are blended behind all " +
+          "layers like one more layer, with an \u03b1 of 1: after it nothing comes through any more."
+        : "The opaque surfaces were waiting in their G-buffer. Now they are lit, once, and blended " +
         "behind all layers like one more layer, with an \u03b1 of 1: after it nothing comes through " +
         "any more.",
     buffers: ["accum"],
@@ -137,9 +141,10 @@ walk.ending = (before, lines, [light, background, display]) => [
 
 walk.peeling = () => {
     const { peels } = app.frame;
-    return [walk.naive(), ...walk.opaque(walk.PEEL_CODE), ...walk.peels(),
+    const lines = walk.peelCode();
+    return [walk.naive(), ...walk.opaque(lines), ...walk.peels(),
             ...(peels > 0 ? [walk.stop()] : []),
-            ...walk.ending(peels > 0 ? `peel.${peels - 1}.accum` : null, walk.PEEL_CODE,
+            ...walk.ending(peels > 0 ? `peel.${peels - 1}.accum` : null, lines,
                            [[13], [14], [15]])];
 };
 

@@ -55,6 +55,8 @@ const ANSWERS = [
          await link(page, "move its alpha");
          await type(page, "#material-4-alpha ~ input", "0.1");
      }, /not what it lets through/],
+     [(page) => type(page, "#material-4-alpha ~ input", "1"), /no longer blended/],
+     [(page) => type(page, "#material-4-alpha ~ input", "0.901"), /T is 0.099/],
      [(page) => type(page, "#material-4-alpha ~ input", "0.9"), null]],
     [[async (page) => {}, /the painter is wrong here/],
      [(page) => choose(page, "0,0"), /0 layers/],
@@ -65,14 +67,17 @@ const ANSWERS = [
     [[async (page) => link(page, "Set the passes"), /automatic/],
      [(page) => slide(page, "#set-passes", 2), /never reached/],
      [(page) => slide(page, "#set-passes", 7), /fewer will do/],
+     [(page) => page.selectOption("#set-method", { label: "dual" }), /choose peel/],
+     [(page) => page.selectOption("#set-method", { label: "peel" }), /fewer will do/],
      [(page) => slide(page, "#set-passes", 4), null]],
-    [[async (page) => {}, /0.421875/],
+    [[async (page) => {}, /0.4219/],
      [async (page) => {
          await link(page, "Set their alpha");
          await type(page, "#material-4-alpha ~ input", "0.75");
-     }, /T is 0.015625/],
+     }, /T is 0.01563/],
      [(page) => type(page, "#material-4-alpha ~ input", "0.5"), null]],
-    [[async (page) => {}, /No pixel/],
+    [[async (page) => {}, /threw away 1/],
+     [(page) => choose(page, ""), /No pixel/],
      [(page) => choose(page, "0,0"), /threw away \d/],
      [async (page) => {
          await link(page, "Its steps");
@@ -84,8 +89,9 @@ const ANSWERS = [
          await choose(page, await find(page,
              "(i) => app.frame.buffer('peel.0.farther').data[i] >= 3"));
      }, null]],
-    [[async (page) => link(page, "Set the depth format"), /d32f/],
+    [[async (page) => link(page, "Open the depth format"), /d32f/],
      [(page) => page.selectOption("#set-depth", { label: "d16" }), /lost to ties/],
+     [(page) => page.selectOption("#set-method", { label: "dual" }), null],
      [(page) => page.selectOption("#set-method", { label: "weighted-average" }), /approximation/],
      [(page) => page.selectOption("#set-method", { label: "peel-id" }), null]],
 ];
@@ -143,6 +149,37 @@ async function testLesson(browser, folder, number) {
     console.log(`${where}: answered`);
 }
 
+/* The live view of a lesson ends at the steps' size, by which the question is judged. */
+async function testLiveSize(browser, folder) {
+    const page = await open(browser, path.join(folder, "lesson-3.html"), "#view=live");
+    await page.waitForFunction(() => live.frame && !live.busy && !live.refining &&
+        String([live.frame.width, live.frame.height]) === String(app.settings.size),
+        null, { timeout: WAIT_MS });
+    const sizes = await page.evaluate(() => live.sizes(app.settings.size, app.settings.size,
+                                                       live.shownWidth()));
+    assert.deepEqual(sizes, [], "a larger picture would have other figures");
+    await close(page);
+}
+
+/* On a narrow window the verdict is at its edge while the question is out of view, once it was
+ * seen. */
+async function testStrip(browser, folder) {
+    const page = await open(browser, path.join(folder, "lesson-2.html"), "",
+                            { viewport: { width: 400, height: 850 } });
+    const strip = page.locator("#lesson-strip");
+    assert.equal(await strip.isVisible(), false, "before the question was seen");
+    await page.locator(".question").scrollIntoViewIfNeeded();
+    await page.locator("#step-pictures canvas").first().click({ position: { x: 5, y: 5 } });
+    await page.evaluate(() => document.getElementById("step-pictures").scrollIntoView());
+    await says(page, false, /0 layers/, "strip");
+    await strip.waitFor({ state: "visible", timeout: WAIT_MS });
+    assert.match(await strip.textContent(), /0 layers/);
+    assert.equal(await page.locator("[role=status]", { hasText: "Not yet" }).count(), 1);
+    await strip.click();
+    await strip.waitFor({ state: "hidden", timeout: WAIT_MS });
+    await close(page);
+}
+
 async function testIndex(browser, folder) {
     const page = await browser.newPage();
     await page.goto(`file://${folder}/index.html`);
@@ -168,6 +205,8 @@ async function main() {
         await testIndex(browser, folder);
         for (let number = 1; number <= ANSWERS.length; number++)
             await testLesson(browser, folder, number);
+        await testLiveSize(browser, folder);
+        await testStrip(browser, folder);
     } finally {
         await browser.close();
     }
