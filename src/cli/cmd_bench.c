@@ -154,8 +154,8 @@ static error_t add_threads(const char *text, void *context)
     BenchPlan *plan = context;
     error_t error = check_room("--threads", plan->thread_count);
     if (error == 0)
-        error = options_count("--threads", text, 1, THREADS_MAX,
-                              &plan->threads[plan->thread_count]);
+        error =
+            options_count("--threads", text, 1, THREADS_MAX, &plan->threads[plan->thread_count]);
     plan->thread_count += error == 0;
     return error;
 }

@@ -104,7 +104,8 @@ typedef struct Experiment {
     /* EXPERIMENT_TEXELS vec4 each; for triangles, 3·count corners: clip position, and varyings
      * in x, y, z. The caller's. */
     const float (*a)[4], (*b)[4];
-    uint32_t *before; /* EXPERIMENT_BLEND: NULL, or room for what b was stored as, 4 codes a texel */
+    uint32_t
+        *before; /* EXPERIMENT_BLEND: NULL, or room for what b was stored as, 4 codes a texel */
     int count;
     bool zero_to_one; /* clip space depth 0…w */
     DepthFunc depth_func;

@@ -25,30 +25,30 @@ static Nearness nearness(const Rational *number, double *nearest)
     return !exact ? NEAR_NEITHER : is_float ? NEAR_FLOAT : NEAR_DOUBLE;
 }
 
-const char *blend_cells_decimal(const Rational *number, char out[TEXT_NUMBER])
+const char *blend_cells_decimal(const Rational *number, char out[NUMERAL_MAX])
 {
     double nearest;
     Nearness near = nearness(number, &nearest);
     if (near == NEAR_FLOAT)
-        return text_float(nearest, out);
-    char text[TEXT_NUMBER];
-    if (near == NEAR_DOUBLE && strlen(text_double(nearest, text)) <= 14)
+        return numeral_float(nearest, out);
+    char text[NUMERAL_MAX];
+    if (near == NEAR_DOUBLE && strlen(numeral_double(nearest, text)) <= 14)
         return strcpy(out, text);
-    snprintf(out, TEXT_NUMBER, "~%s", text_float(nearest, text));
+    snprintf(out, NUMERAL_MAX, "~%s", numeral_float(nearest, text));
     return out;
 }
 
-const char *blend_cells_hex(const Rational *number, char out[TEXT_NUMBER])
+const char *blend_cells_hex(const Rational *number, char out[NUMERAL_MAX])
 {
     double nearest;
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     if (nearness(number, &nearest) != NEAR_NEITHER)
-        return text_hex(nearest, out);
-    snprintf(out, TEXT_NUMBER, "~%s", text_hex((double)rational_to_float(number), text));
+        return numeral_hex(nearest, out);
+    snprintf(out, NUMERAL_MAX, "~%s", numeral_hex((double)rational_to_float(number), text));
     return out;
 }
 
-const char *blend_cells_code(const Rational *number, PixelFormat format, char out[TEXT_NUMBER])
+const char *blend_cells_code(const Rational *number, PixelFormat format, char out[NUMERAL_MAX])
 {
     Rational code;
     rational_init(&code);
@@ -59,27 +59,27 @@ const char *blend_cells_code(const Rational *number, PixelFormat format, char ou
     double thousandths = nearest * 1000.0;
     bool short_one = near != NEAR_NEITHER && thousandths == floor(thousandths);
     if (!isfinite(nearest) || short_one)
-        text_float(nearest, out);
+        numeral_float(nearest, out);
     else
-        snprintf(out, TEXT_NUMBER, "~%.3f", nearest);
+        snprintf(out, NUMERAL_MAX, "~%.3f", nearest);
     rational_clear(&code);
     return out;
 }
 
-const char *blend_cells_error(double error, char out[TEXT_NUMBER])
+const char *blend_cells_error(double error, char out[NUMERAL_MAX])
 {
     if (isnan(error))
         return strcpy(out, "nan");
     if (error == 0.0)
         return strcpy(out, "0");
-    snprintf(out, TEXT_NUMBER, "%+.*g", fabs(error) < 0.001 ? 2 : 3, error);
+    snprintf(out, NUMERAL_MAX, "%+.*g", fabs(error) < 0.001 ? 2 : 3, error);
     return out;
 }
 
-const char *blend_cells_given(const Rational *number, char out[TEXT_NUMBER])
+const char *blend_cells_given(const Rational *number, char out[NUMERAL_MAX])
 {
     blend_cells_decimal(number, out);
-    char *fraction = out[0] == '~' ? text_fraction(number) : NULL;
+    char *fraction = out[0] == '~' ? numeral_fraction(number) : NULL;
     if (fraction && strlen(fraction) < 20)
         strcpy(out, fraction);
     free(fraction);
@@ -92,7 +92,7 @@ GridStyle blend_cells_style(double ulp)
     return size == 0.0 ? GRID_FAINT : size <= 0.5 ? GRID_GOOD : size <= 1.0 ? GRID_WARN : GRID_BAD;
 }
 
-const char *blend_cells_stored(const Rational *number, PixelFormat format, char out[TEXT_NUMBER])
+const char *blend_cells_stored(const Rational *number, PixelFormat format, char out[NUMERAL_MAX])
 {
     if (format_info(format)->kind == KIND_UNORM)
         return blend_cells_code(number, format, out);
@@ -101,7 +101,7 @@ const char *blend_cells_stored(const Rational *number, PixelFormat format, char 
 
 void blend_cells_number(Grid *grid, GridStyle style, const Rational *number, PixelFormat format)
 {
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     grid_put(grid, style, "%s", blend_cells_decimal(number, text));
     grid_put(grid, GRID_FAINT, "%s", blend_cells_hex(number, text));
     if (format_info(format)->kind == KIND_UNORM)
@@ -110,7 +110,7 @@ void blend_cells_number(Grid *grid, GridStyle style, const Rational *number, Pix
 
 void blend_cells_errors(Grid *grid, const Rational *error, double ulp)
 {
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     GridStyle style = blend_cells_style(ulp);
     grid_put(grid, style, "%s", blend_cells_error(ulp, text));
     grid_put(grid, style, "%s", blend_cells_error(rational_to_double(error), text));
@@ -126,7 +126,7 @@ void blend_cells_fraction(Grid *grid, int width, const Rational *number, PixelFo
         rational_fetch(code, format, &stored);
     bool is_code = most && rational_equal(&stored, number) && code > 0 && code < most;
     rational_clear(&stored);
-    char *text = text_fraction(number);
+    char *text = numeral_fraction(number);
     size_t length = strlen(text);
     if (is_code) /* 63/255 says more than 21/85 */
         grid_put(grid, GRID_PLAIN, "%u/%u", code, most);

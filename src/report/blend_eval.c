@@ -55,13 +55,13 @@ static void print_start(const BlendPage *page)
     blend_eval_cleared(&desc->equation, cleared);
     fputs("  start: C = ", page->out);
     for (int c = 0; c < blend_page_channels(page); c++) {
-        char text[TEXT_NUMBER];
+        char text[NUMERAL_MAX];
         if (c == 3)
             fprintf(page->out, "; %s = ", page->terms.alpha.target);
         else
             fputs(c ? ", " : "", page->out);
         fputs(desc->start ? blend_cells_given(&desc->start->channels[c], text)
-                          : text_float((double)cleared[c], text),
+                          : numeral_float((double)cleared[c], text),
               page->out);
     }
     fputs(!desc->start            ? " (cleared)\n"
@@ -115,7 +115,7 @@ static void print_legend(const BlendPage *page)
 void blend_page_layer(const BlendPage *page, const EvalLayer *layer)
 {
     const EvalDesc *desc = page->desc;
-    char numbers[4][TEXT_NUMBER], heading[320];
+    char numbers[4][NUMERAL_MAX], heading[320];
     for (int c = 0; c < 4; c++)
         blend_cells_given(&layer->given->channels[c], numbers[c]);
     bool straight = desc->multiply || blend_eval_takes_straight(&desc->equation);
@@ -244,7 +244,7 @@ static double worst_off(const BlendEval *eval)
 
 static void add_brief(const BlendEval *eval, Grid *grid)
 {
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     double worst = worst_off(eval);
     grid_row(grid);
     grid_put(grid, GRID_PLAIN, "%zu", eval->layer.index + 1);

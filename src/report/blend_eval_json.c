@@ -1,5 +1,5 @@
 /* The document of `peel blend eval --json`: its keys are a contract, as those of json.c. */
-#include "number/text.h"
+#include "number/numeral.h"
 #include "report/blend_cells.h"
 #include "report/blend_eval.h"
 #include "report/blend_terms.h"
@@ -29,7 +29,7 @@ enum {
 static void put_fraction(Document *json, json_t *object, const char *key, const Rational *number,
                          size_t most)
 {
-    char *text = text_fraction(number);
+    char *text = numeral_fraction(number);
     document_put(json, object, key, strlen(text) <= most ? json_string(text) : json_null());
     free(text);
 }
@@ -38,7 +38,7 @@ static void put_fraction(Document *json, json_t *object, const char *key, const 
 static json_t *number_object(Document *json, const Rational *number, size_t most)
 {
     json_t *object = json_object();
-    char hex[TEXT_NUMBER];
+    char hex[NUMERAL_MAX];
     blend_cells_hex(number, hex);
     document_put(json, object, "value", document_real(rational_to_double(number)));
     document_put(json, object, "hex", hex[0] == '~' ? json_null() : json_string(hex));

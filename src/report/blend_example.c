@@ -1,6 +1,6 @@
 #include "report/blend_example.h"
 
-#include "number/text.h"
+#include "number/numeral.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,7 +16,7 @@ const char *blend_text_bits(PixelFormat format, uint32_t bits, char out[BLEND_TE
     if (format_info(format)->unorm_max)
         snprintf(out, BLEND_TEXT, "%u", bits);
     else
-        text_both(blend_case_value(format, bits), out);
+        numeral_both(blend_case_value(format, bits), out);
     return out;
 }
 
@@ -31,7 +31,7 @@ const char *blend_text_source(PixelFormat format, float x, char out[BLEND_TEXT])
     if (is_code(format, x))
         snprintf(out, BLEND_TEXT, "%.0f", nearbyint((double)x * format_info(format)->unorm_max));
     else
-        text_both((double)x, out);
+        numeral_both((double)x, out);
     return out;
 }
 
@@ -56,7 +56,7 @@ static const char *brief(PixelFormat format, bool bits, uint32_t stored, float s
     if (code && is_code(format, source))
         blend_text_source(format, source, out);
     else
-        text_float(number, out);
+        numeral_float(number, out);
     return out;
 }
 
@@ -89,7 +89,7 @@ static const char *number(const BlendSteps *steps, double x, char out[BLEND_TEXT
     else if (steps->codes)
         snprintf(out, BLEND_TEXT, "%.0f", x);
     else
-        text_both(x, out);
+        numeral_both(x, out);
     return out;
 }
 
@@ -135,8 +135,8 @@ void blend_print_example(const BlendReport *report, const char *name, const Arit
 
 static json_t *json_number(double x)
 {
-    char text[TEXT_NUMBER];
-    return json_string(text_hex(x, text));
+    char text[NUMERAL_MAX];
+    return json_string(numeral_hex(x, text));
 }
 
 json_t *blend_json_bits(PixelFormat format, uint32_t bits)

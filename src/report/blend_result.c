@@ -41,7 +41,7 @@ static void print_totals(const BlendPage *page, const BlendEval *eval)
 
 static void put_ulp(Grid *grid, double ulp)
 {
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     grid_put(grid, blend_cells_style(ulp), "%s", blend_cells_error(ulp, text));
 }
 
@@ -50,7 +50,7 @@ static void add_sides(const BlendPage *page, const EvalSides *sides, Grid *grid)
     static const char *const headings[] = {"",           "under",       "over",      "ideal",
                                            "under-over", "under-ideal", "over-ideal"};
     PixelFormat format = page->desc->format;
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     grid_row(grid);
     for (size_t i = 0; i < sizeof headings / sizeof *headings; i++)
         grid_put(grid, GRID_HEAD, "%s", headings[i]);

@@ -23,7 +23,7 @@ static bool any_says(const BlendPage *page, const BlendEval *evals, int c, EvalS
 static void add_pair(const BlendPage *page, const Rational *number, double ulp, GridStyle style,
                      Grid *grid)
 {
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     bool unorm = format_info(page->desc->format)->kind == KIND_UNORM;
     grid_put(grid, style, "%s",
              unorm ? blend_cells_code(number, page->desc->format, text)
@@ -148,7 +148,7 @@ static void add_result(const BlendPage *page, const EvalNamed *named, const Blen
 {
     PixelFormat format = page->desc->format;
     unsigned char pixel[16];
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     double off = 0.0, between = 0.0;
     Rational number, difference;
     rational_init(&number);
@@ -178,7 +178,7 @@ static void add_result(const BlendPage *page, const EvalNamed *named, const Blen
 
 static void add_exact(const BlendPage *page, const BlendEval *eval, Grid *grid)
 {
-    char text[TEXT_NUMBER];
+    char text[NUMERAL_MAX];
     grid_row(grid);
     grid_put(grid, GRID_FAINT, "(ideal)");
     for (int c = 0; c < blend_page_channels(page); c++)

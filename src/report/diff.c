@@ -2,7 +2,7 @@
  * them go on working. */
 #include "report/diff.h"
 
-#include "number/text.h"
+#include "number/numeral.h"
 #include "report/summary.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ static void print_values(const DiffPart *part, const DiffPixel *pixel, FILE *out
         for (int c = 0; c < part->channel_count; c++) {
             if (!part->channels[c].kinds[side])
                 continue;
-            fprintf(out, "%s%s", separator, text_float(pixel->values[side][c], number));
+            fprintf(out, "%s%s", separator, numeral_float(pixel->values[side][c], number));
             separator = ", ";
         }
     }
@@ -144,7 +144,7 @@ static void print_worst(const ReportDiff *diff, const DiffPart *part, FILE *out)
         bool counts = pixel->ulp == UINT32_MAX && part->deep;
         fprintf(out, "  %-12s %-12s %11s %13s  ", place,
                 counts ? "samples" : part->channels[pixel->channel].name,
-                isinf(pixel->error) ? "not finite" : text_float(pixel->error, error),
+                isinf(pixel->error) ? "not finite" : numeral_float(pixel->error, error),
                 pixel->ulp == UINT32_MAX ? "-" : summary_count(pixel->ulp, ulp));
         if (classes) {
             size_t at = (size_t)pixel->y * (size_t)part->width + (size_t)pixel->x;

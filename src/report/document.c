@@ -1,7 +1,7 @@
 #include "report/document.h"
 
 #include "base/file.h"
-#include "number/text.h"
+#include "number/numeral.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -45,8 +45,8 @@ json_t *document_string(const char *text)
 
 json_t *document_hex(double value)
 {
-    char text[TEXT_NUMBER];
-    return json_string(text_hex(value, text));
+    char text[NUMERAL_MAX];
+    return json_string(numeral_hex(value, text));
 }
 
 static int write_text(const char *text, size_t size, void *writer)

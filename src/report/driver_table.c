@@ -1,7 +1,7 @@
 #include "report/driver.h"
 
+#include "number/numeral.h"
 #include "number/op.h"
-#include "number/text.h"
 #include "report/summary.h"
 
 #include <string.h>
@@ -37,8 +37,8 @@ static void print_value(DriverValue value, uint32_t bits, FILE *out)
         return;
     }
     float x = value == DRIVER_HALF ? half_to_float((uint16_t)bits) : op_from_bits(bits);
-    char text[TEXT_BOTH];
-    fputs(text_both((double)x, text), out);
+    char text[NUMERAL_BOTH];
+    fputs(numeral_both((double)x, text), out);
 }
 
 /* Long lists of inputs break before the right edge. */
@@ -48,9 +48,9 @@ static void print_example(const DriverRule *rule, FILE *out)
     fprintf(out, "\n%s%s%s\n", rule->id, example->place[0] ? ": " : "", example->place);
     int column = 0;
     for (int i = 0; i < example->input_count; i++) {
-        char text[128], number[TEXT_BOTH];
+        char text[128], number[NUMERAL_BOTH];
         int length = snprintf(text, sizeof text, "  %s = %s", example->input_names[i],
-                              text_both((double)example->inputs[i], number));
+                              numeral_both((double)example->inputs[i], number));
         if (column && column + length > 99) {
             fputc('\n', out);
             column = 0;

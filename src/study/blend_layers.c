@@ -1,6 +1,6 @@
 #include "study/blend_layers.h"
 
-#include "number/text.h"
+#include "number/numeral.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -88,7 +88,7 @@ static Result read_numbers(const char *place, const char *text, size_t length, i
     for (int i = 0; i < 4; i++) {
         if (i >= count)
             rational_set(i == 3 ? 1.0 : 0.0, &out->channels[i]);
-        else if (text_read(tokens[i].text, tokens[i].length, &out->channels[i]) != RESULT_OK)
+        else if (numeral_read(tokens[i].text, tokens[i].length, &out->channels[i]) != RESULT_OK)
             return result_fail(RESULT_BAD_INPUT, "%s: %s: %s", place, channel_names[i],
                                result_message());
     }

@@ -27,7 +27,7 @@ typedef struct BlendLayers {
 void blend_colour_init(BlendColour *out);
 void blend_colour_clear(BlendColour *colour);
 
-/* "r,g,b,a", numbers as text_read has them, or codes of 8 or 16 bits: "#rrggbb", "#rrggbbaa",
+/* "r,g,b,a", numbers as numeral_read has them, or codes of 8 or 16 bits: "#rrggbb", "#rrggbbaa",
  * "#rrrrggggbbbbaaaa". least: how many numbers it must have, the others are 0, alpha 1; 4 unless
  * the format has fewer channels. out: initialised. BAD_INPUT with `place`, the text and what was
  * expected. */

@@ -5,7 +5,7 @@
 #include "compare/store.h"
 #include "compare/trace_file.h"
 #include "frame/method.h"
-#include "number/text.h"
+#include "number/numeral.h"
 #include "study/check_steps.h"
 
 #include <math.h>
@@ -214,8 +214,8 @@ void check_describe_worst(const CheckStep *step, char *text, size_t size)
     if (worst->ulp >= 0.0)
         snprintf(apart, sizeof apart, ", %.10g %s apart", worst->ulp, unit);
     const char *channel = format_info(step->format)->channels == 1 ? "" : "RGBA";
-    char theirs[TEXT_BOTH], reference[TEXT_BOTH];
+    char theirs[NUMERAL_BOTH], reference[NUMERAL_BOTH];
     snprintf(text, size, "pixel (%d, %d)%s%.1s: theirs %s, reference %s%s", worst->x, worst->y,
              *channel ? ", " : "", *channel ? channel + worst->channel : "",
-             text_both(worst->theirs, theirs), text_both(worst->reference, reference), apart);
+             numeral_both(worst->theirs, theirs), numeral_both(worst->reference, reference), apart);
 }

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/random.h"
-#include "number/text.h"
+#include "number/numeral.h"
 #include "study/blend_eval.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 static void read_number(const char *text, Rational *out)
 {
-    ck_assert_msg(text_read(text, strlen(text), out) == RESULT_OK, "%s: %s", text,
+    ck_assert_msg(numeral_read(text, strlen(text), out) == RESULT_OK, "%s: %s", text,
                   result_message());
 }
 
@@ -121,7 +121,7 @@ static void check_number(const Rational *got, const char *expected)
     Rational number;
     rational_init(&number);
     read_number(expected, &number);
-    char *text = text_fraction(got);
+    char *text = numeral_fraction(got);
     ck_assert_msg(rational_equal(got, &number), "got %s, expected %s", text, expected);
     free(text);
     rational_clear(&number);

@@ -2,19 +2,19 @@
 #include "testing.h"
 
 #include "base/random.h"
-#include "number/text.h"
+#include "number/numeral.h"
 
 #include <math.h>
 
 static void read_number(const char *text, Rational *out)
 {
-    ck_assert_msg(text_read(text, strlen(text), out) == RESULT_OK, "%s: %s", text,
+    ck_assert_msg(numeral_read(text, strlen(text), out) == RESULT_OK, "%s: %s", text,
                   result_message());
 }
 
 static void check_fraction(const Rational *number, const char *expected)
 {
-    char *text = text_fraction(number);
+    char *text = numeral_fraction(number);
     ck_assert_str_eq(text, expected);
     free(text);
 }
@@ -66,17 +66,17 @@ START_TEST(bad_numbers_are_refused)
     Rational number;
     rational_init(&number);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        ck_assert_int_eq(text_read(cases[i].text, strlen(cases[i].text), &number),
+        ck_assert_int_eq(numeral_read(cases[i].text, strlen(cases[i].text), &number),
                          RESULT_BAD_INPUT);
         ck_assert_msg(strstr(result_message(), cases[i].problem) != NULL, "%s: %s", cases[i].text,
                       result_message());
         ck_assert_ptr_nonnull(strstr(result_message(), "expected a number"));
     }
     memset(digits, '1', sizeof digits);
-    ck_assert_int_eq(text_read(digits, sizeof digits, &number), RESULT_BAD_INPUT);
-    ck_assert_int_eq(text_read("1\0"
-                               "2",
-                               3, &number),
+    ck_assert_int_eq(numeral_read(digits, sizeof digits, &number), RESULT_BAD_INPUT);
+    ck_assert_int_eq(numeral_read("1\0"
+                                  "2",
+                                  3, &number),
                      RESULT_BAD_INPUT);
     rational_clear(&number);
 }
@@ -150,33 +150,33 @@ END_TEST
 
 START_TEST(decimals_are_the_shortest_that_read_back)
 {
-    char text[TEXT_NUMBER], both[TEXT_BOTH];
-    ck_assert_str_eq(text_float((double)0.1f, text), "0.1");
-    ck_assert_str_eq(text_float((double)(1.0f / 3.0f), text), "0.33333334");
-    ck_assert_str_eq(text_double(1.0 / 3.0, text), "0.3333333333333333");
-    ck_assert_str_eq(text_float(1234567.0, text), "1234567");
-    ck_assert_str_eq(text_float(-0.0, text), "-0");
-    ck_assert_str_eq(text_float((double)0x1p-149f, text), "1e-45");
-    ck_assert_str_eq(text_float(-NAN, text), "nan");
-    ck_assert_str_eq(text_float(-INFINITY, text), "-inf");
-    ck_assert_str_eq(text_hex(0.75, text), "0x1.8p-1");
-    ck_assert_str_eq(text_hex(-NAN, text), "nan");
-    ck_assert_str_eq(text_both(0.75, both), "0.75 (0x1.8p-1)");
+    char text[NUMERAL_MAX], both[NUMERAL_BOTH];
+    ck_assert_str_eq(numeral_float((double)0.1f, text), "0.1");
+    ck_assert_str_eq(numeral_float((double)(1.0f / 3.0f), text), "0.33333334");
+    ck_assert_str_eq(numeral_double(1.0 / 3.0, text), "0.3333333333333333");
+    ck_assert_str_eq(numeral_float(1234567.0, text), "1234567");
+    ck_assert_str_eq(numeral_float(-0.0, text), "-0");
+    ck_assert_str_eq(numeral_float((double)0x1p-149f, text), "1e-45");
+    ck_assert_str_eq(numeral_float(-NAN, text), "nan");
+    ck_assert_str_eq(numeral_float(-INFINITY, text), "-inf");
+    ck_assert_str_eq(numeral_hex(0.75, text), "0x1.8p-1");
+    ck_assert_str_eq(numeral_hex(-NAN, text), "nan");
+    ck_assert_str_eq(numeral_both(0.75, both), "0.75 (0x1.8p-1)");
     Random random = random_seed(7);
     for (int i = 0; i < 20000; i++) {
         uint32_t bits = (uint32_t)random_bits(&random);
         float x;
         memcpy(&x, &bits, sizeof x);
         if (x == x)
-            ck_assert_float_bits(strtof(text_float((double)x, text), NULL), x);
+            ck_assert_float_bits(strtof(numeral_float((double)x, text), NULL), x);
     }
 }
 END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("text");
-    TCase *tcase = tcase_create("text");
+    Suite *suite = suite_create("numeral");
+    TCase *tcase = tcase_create("numeral");
     tcase_add_test(tcase, numbers_are_read_exactly);
     tcase_add_test(tcase, bad_numbers_are_refused);
     tcase_add_test(tcase, numbers_are_rounded_to_nearest_even);

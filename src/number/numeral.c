@@ -1,4 +1,4 @@
-#include "number/text.h"
+#include "number/numeral.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -9,40 +9,40 @@
 
 /* ---- writing ---- */
 
-static const char *shortest(double value, bool single, char out[TEXT_NUMBER])
+static const char *shortest(double value, bool single, char out[NUMERAL_MAX])
 {
     if (isnan(value))
         return strcpy(out, "nan");
     double size = fabs(value);
     int digits = size >= 1.0 && size < 1e9 ? 1 + (int)log10(size) : 1;
     for (;; digits++) {
-        snprintf(out, TEXT_NUMBER, "%.*g", digits, value);
+        snprintf(out, NUMERAL_MAX, "%.*g", digits, value);
         double back = strtod(out, NULL);
         if (digits >= 17 || back == value || (single && (float)back == (float)value))
             return out;
     }
 }
 
-const char *text_float(double value, char out[TEXT_NUMBER])
+const char *numeral_float(double value, char out[NUMERAL_MAX])
 {
     return shortest(value, true, out);
 }
 
-const char *text_double(double value, char out[TEXT_NUMBER])
+const char *numeral_double(double value, char out[NUMERAL_MAX])
 {
     return shortest(value, false, out);
 }
 
-const char *text_hex(double value, char out[TEXT_NUMBER])
+const char *numeral_hex(double value, char out[NUMERAL_MAX])
 {
-    snprintf(out, TEXT_NUMBER, "%a", isnan(value) ? (double)NAN : value);
+    snprintf(out, NUMERAL_MAX, "%a", isnan(value) ? (double)NAN : value);
     return out;
 }
 
-const char *text_both(double value, char out[TEXT_BOTH])
+const char *numeral_both(double value, char out[NUMERAL_BOTH])
 {
-    char decimal[TEXT_NUMBER], hex[TEXT_NUMBER];
-    snprintf(out, TEXT_BOTH, "%s (%s)", text_float(value, decimal), text_hex(value, hex));
+    char decimal[NUMERAL_MAX], hex[NUMERAL_MAX];
+    snprintf(out, NUMERAL_BOTH, "%s (%s)", numeral_float(value, decimal), numeral_hex(value, hex));
     return out;
 }
 
@@ -64,7 +64,7 @@ static char *whole_power(mpz_srcptr number, mp_bitcnt_t power)
     return text;
 }
 
-char *text_fraction(const Rational *a)
+char *numeral_fraction(const Rational *a)
 {
     char *text = NULL;
     if (a->kind != RATIONAL_FINITE) {
@@ -238,7 +238,7 @@ static bool read_all(Reader *reader, Rational *out)
     return true;
 }
 
-Result text_read(const char *text, size_t length, Rational *out)
+Result numeral_read(const char *text, size_t length, Rational *out)
 {
     char copy[MOST_CHARACTERS + 1];
     while (length && isspace((unsigned char)*text)) {
