@@ -1,7 +1,8 @@
 /* The lessons of the course, in the order of report/course.c, which has their titles and scenes.
  *
  * start: the address a lesson opens at. text, question: paragraphs (course.words), or a table's
- * {head, rows} of texts. check(): whether the question is answered as things stand, {right, text}. */
+ * {head, rows} of texts. check(): whether the question is answered as things stand, {right, text}.
+ */
 "use strict";
 
 const LESSONS = [];
@@ -67,11 +68,11 @@ LESSONS.push({
     start: "step=naive&pixel=164,74",
     text: [
         "Several transparent surfaces are blended one over the other, from the farthest to the " +
-        "nearest, and the order matters: red glass in front of blue glass is not blue in front of red. " +
-        "So each *fragment*, the piece of a surface at one pixel, must be blended in its turn.",
+        "nearest, and the order matters: red glass in front of blue glass is not blue in front " +
+        "of red. So each *fragment*, the piece of a surface at one pixel, must be blended in its turn.",
         "The obvious way is the painter's: sort the objects by the distance of their centres, " +
-        "and draw the farthest first. [Here](step=naive) four square panes stand through each other on an " +
-        "opaque ground. The first picture is the painter's. In the second each pixel's fragments " +
+        "and draw the farthest first. [Here](step=naive) four square panes stand through each " +
+        "other on an opaque ground. The first picture is the painter's. In the second each pixel's fragments " +
         "were sorted by themselves. The third marks in red where the two differ.",
         "Where two panes cross, the first is in front on one side of the line, and the second on " +
         "the other. Whichever is drawn first, one side comes out wrong. Cutting objects into " +
@@ -79,8 +80,8 @@ LESSONS.push({
         "At a single pixel, though, there always is a right order: each fragment there has a " +
         "*depth*, which says how far from the eye it is, as a number from 0, near, to 1, far. " +
         "(The number is not in proportion to the distance: most of the numbers are spent on " +
-        "what is near, so that far things have depths close to 1.) The rest of the course is about finding that order for every pixel, without sorting " +
-        "anything.",
+        "what is near, so that far things have depths close to 1.) The rest of the " +
+        "course is about finding that order for every pixel, without sorting anything.",
     ],
     question: [
         "The painter is not wrong everywhere. Choose a pixel that lies behind at least two panes " +
@@ -146,7 +147,8 @@ LESSONS.push({
     ],
     question: [
         "The number of peels can be limited, to save time; then the last pass, which finds " +
-        "nothing, is saved as well. Which is the smallest number that loses nothing here? [Set the passes](view=live&focus=set-passes).",
+        "nothing, is saved as well. Which is the smallest number that loses nothing here? " +
+        "[Set the passes](view=live&focus=set-passes).",
     ],
     source: "C. Everitt, Interactive Order-Independent Transparency, NVIDIA, 2001",
     async check() {
@@ -273,8 +275,8 @@ LESSONS.push({
 
 /* ---- 6: numbers ---- */
 
-const LESSON_6_DUAL = " finds the nearest and the farthest in a buffer of its own, always of 32-bit " +
-    "floats: with those no two fragments of a pixel are equal here. The method peel-id goes " +
+const LESSON_6_DUAL = " finds the nearest and the farthest in a buffer of its own, always of " +
+    "32-bit floats: with those no two fragments of a pixel are equal here. The method peel-id goes " +
     "further: it would lose none even then, as it compares the triangles' numbers.";
 
 /* Why an exact method loses none. */
@@ -310,8 +312,8 @@ LESSONS.push({
         "formats can be changed.",
     ],
     question: [
-        "[Open the depth format](view=live&focus=set-depth), set it to d16, and see, in the live view's " +
-        "figures, that fragments are lost to ties. Then, with depths still in 16 bits, lose " +
+        "[Open the depth format](view=live&focus=set-depth), set it to d16, and see, in the " +
+        "live view's figures, that fragments are lost to ties. Then, with depths still in 16 bits, lose " +
         "none, and keep the image exact. (Two depths may be equal; what else does a fragment " +
         "have that no other has? Some [method](view=live&focus=set-method) may use it.)",
     ],

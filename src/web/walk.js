@@ -254,11 +254,12 @@ walk.GBUFFER = { normal: "Normal", position: "Position", diffuse: "Base colour",
 walk.peelGBuffer = (k) => {
     const has = Object.keys(walk.GBUFFER).filter((what) => app.frame.buffer(`peel.${k}.${what}`));
     return {
-        title: walk.isForward() ? "The layer's colour, lit as it was drawn" : "The layer's G-buffer",
+        title: walk.isForward() ? "The layer's colour, lit as it was drawn"
+                                : "The layer's G-buffer",
         text: walk.isForward()
             ? "A fragment is lit when it is drawn, before it is known whether it stays. Of those " +
-              "that stay only the colour is stored, multiplied by \u03b1, and \u03b1 as its fourth " +
-              "channel."
+              "that stay only the colour is stored, multiplied by \u03b1, and \u03b1 as its " +
+              "fourth channel."
             : "Of the fragments that stay, the same properties are stored as of the opaque " +
             "surfaces. The fourth channel of the base colour is the opacity, \u03b1: the part of the " +
             "light from behind that the surface keeps from us.",
@@ -276,8 +277,8 @@ walk.peelGBuffer = (k) => {
 walk.peelLight = (k) => app.frame.buffer(`peel.${k}.source`) && ({
     title: "The lit layer, premultiplied",
     text: walk.isForward()
-        ? "The stored colour is what will be blended. It was multiplied by \u03b1: a premultiplied " +
-          "colour is the light that the surface itself sends to the eye."
+        ? "The stored colour is what will be blended. It was multiplied by \u03b1: a " +
+          "premultiplied colour is the light that the surface itself sends to the eye."
         : "One pass over the picture lights the layer from its G-buffer, once for each pixel. " +
         "What will be blended is the colour multiplied by \u03b1, and \u03b1 beside it: a " +
         "premultiplied colour is the light that the surface itself sends to the eye.",
@@ -357,9 +358,12 @@ walk.swap = (k) => {
             app.element("div", { className: "frame empty" }))
         : figure.make(`Buffer ${walk.side(peel)}: layer ${peel + 1}`,
                       draw.depth(app.frame.buffer(`peel.${peel}.depth`))));
-    shown.forEach((picture, i) => picture.prepend(app.element("div", {
-        className: `role ${i === 0 ? "left" : "right"}${i === k % 2 ? "" : " next"}` }, app.element("span", {
-            textContent: i === k % 2 ? "previous depth" : "cleared and written next" }))));
+    shown.forEach((picture, i) => {
+        const side = i === 0 ? "left" : "right", written = i === k % 2;
+        picture.prepend(app.element("div", { className: `role ${side}${written ? "" : " next"}` },
+            app.element("span", {
+                textContent: written ? "previous depth" : "cleared and written next" })));
+    });
     return app.element("div", { className: "swap" },
         app.element("div", { className: "pictures" }, ...shown));
 };

@@ -10,9 +10,11 @@ walk.stop = () => {
         id: "stop", kind: "peel", group: "Peels", code: [8],
         title: limited ? "The number of peels was limited" : "Nothing is left to peel",
         text: limited
-            ? ["After ", count(peels, "peels"), peels === 1 ? " peel" : " peels", " the limit was reached, and ",
+            ? ["After ", count(peels, "peels"), peels === 1 ? " peel" : " peels",
+               " the limit was reached, and ",
                count(lost, "lost_to_pass_limit"), lost === 1 ? " fragment was" : " fragments were",
-               " never taken. The light they " + "would have added is at most what still came through in front of them: a " +
+               " never taken. The light they would have added is at most what still came through " +
+               "in front of them: a " +
                "transmittance of up to ", app.numberElement(residual, "double", "frame.residual_max"),
                "."]
             : ["One more geometry pass would keep no fragment: every transparent surface was taken " +
@@ -44,8 +46,10 @@ walk.light = (before, lines, code) => walk.step({
                             : "Light the opaque surfaces and blend them under",
     text: walk.isForward()
         ? "The opaque surfaces were lit as they were drawn. Now they are blended behind all " +
-          "layers like one more layer, with an \u03b1 of 1: after it nothing comes through any more."
-        : "The opaque surfaces were waiting in their G-buffer. Now they are lit, once, and blended " +
+          "layers like one more layer, with an \u03b1 of 1: after it nothing comes through any " +
+          "more."
+        : "The opaque surfaces were waiting in their G-buffer. Now they are lit, once, and " +
+          "blended " +
         "behind all layers like one more layer, with an \u03b1 of 1: after it nothing comes through " +
         "any more.",
     buffers: ["accum"],
