@@ -47,9 +47,7 @@ static void put_lesson(FileWriter *page, int i)
     html_text(page, course_titles[i]);
     put(page, "</a><br>");
     html_text(page, course_lessons[i].summary);
-    put(page, " <span class=\"note\">Scene: ");
-    html_text(page, course_lessons[i].scene);
-    put(page, ".</span></li>\n");
+    put(page, "</li>\n");
 }
 
 static void put_page(FileWriter *page, const char *command)
@@ -63,10 +61,9 @@ static void put_page(FileWriter *page, const char *command)
     put(page, "</style>\n</head>\n<body>\n<header>\n<p class=\"kicker\">Peel, explained</p>\n"
               "<h1>Transparency by depth peeling</h1>\n"
               "<p>Six short lessons, ten minutes each at most. You need to know what a pixel and "
-              "a triangle are; every other term is explained where it comes first. Each lesson "
-              "is a renderer that runs in the page: what you read about is marked in its "
-              "pictures and numbers, and a question at the end is answered by moving something. "
-              "Everything is computed here; nothing is fetched.</p>\n</header>\n<main>\n"
+              "a triangle are. Beside each text a renderer runs in the page: links in the text "
+              "lead to the steps that it is about, and a question at the end is answered by "
+              "moving something.</p>\n</header>\n<main>\n"
               "<ol class=\"lessons\">\n");
     for (int i = 0; i < COURSE_LESSONS; i++)
         put_lesson(page, i);
