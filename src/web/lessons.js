@@ -141,6 +141,11 @@ LESSONS.push({
         "One depth buffer cannot do both tests: what a pass compares with must not change while " +
         "the pass writes the depths that it finds. So there are two, and [they change " +
         "places](step=peel-1-swap) after each peel.",
+        "What a peel took is lit and [blended behind](step=peel-1-blend) what is there: the new " +
+        "colour is 1 · the colour so far + T · the source, and T then becomes T · (1 − α). The " +
+        "two multipliers are the *blend factors*. T, the light that all layers in front let " +
+        "through, weakens the new layer; 1 leaves alone what came before it. Lesson 4 tries " +
+        "them out.",
         "Opaque surfaces, here the ground, are drawn before all this. What is behind them cannot " +
         "be seen, so a fragment must also be [in front of their depth](step=peel-1-compare), the " +
         "*opaque depth*.",
