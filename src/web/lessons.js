@@ -31,8 +31,9 @@ LESSONS.push({
         "*source*.",
         "What the eye gets is a sum: source + (1 − α) · light from behind. To put " +
         "one thing over another like this is to *blend* them. The part that still comes through, " +
-        "here 1 − α, is called *transmittance*, T. At the ring, in red: 0.215 from the " +
-        "square, + 0.75 · 0.817 from the wall, = 0.828 to the eye.",
+        "here 1 − α, is called *transmittance*, T; of several surfaces it is the product of " +
+        "theirs. At the ring, in red: 0.215 from the square, + 0.75 · 0.817 from the wall, " +
+        "= 0.828 to the eye. (These numbers are light, before they are fitted to the display.)",
         "The page adds in another order: [first the square](step=peel-0-blend&pixel=18,61), to " +
         "nothing, which leaves T = 0.75; and later, as the last of all, [the wall]" +
         "(step=light&pixel=18,61), times T. The sum is the same; lesson 4 tells why it is done " +
@@ -131,7 +132,7 @@ LESSONS.push({
         "previous depth is all it knows of the passes before. Without it, every pass would find " +
         "the first layer again. [See what each test throws away](step=peel-1-discard): " +
         "orange is what was taken already, green is what must wait for a later pass, and " +
-        "striped is some of each.",
+        "vertical bands are some of each.",
         "And so on: a pass that takes one layer from every pixel, always the next one behind, is " +
         "called a *peel*. [Layers in space](view=space) shows what each of them took; the last " +
         "picture [of this step](step=peel-1-depth&pixel=164,74) shows the depths of the ring's " +
