@@ -1,5 +1,6 @@
 #include "report/explain_data.h"
 
+#include "base/base64.h"
 #include "base/memory.h"
 #include "compare/metrics.h"
 #include "frame/method.h"
@@ -33,20 +34,14 @@ static void put_string(Text *out, const char *string)
 
 static void put_base64(Text *out, const unsigned char *bytes, size_t count)
 {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char line[4096 + 1];
-    size_t length = 0;
-    for (size_t i = 0; i < count; i += 3) {
-        size_t left = count - i;
-        uint32_t word = (uint32_t)bytes[i] << 16 | (left > 1 ? (uint32_t)bytes[i + 1] << 8 : 0) |
-                        (left > 2 ? bytes[i + 2] : 0);
-        for (size_t k = 0; k < 4; k++)
-            line[length++] = k <= left ? digits[word >> (18 - 6 * k) & 63] : '=';
-        if (length == sizeof line - 1 || left <= 3) {
-            line[length] = '\0';
-            text_print(out, "%s", line);
-            length = 0;
-        }
+    enum {
+        BLOCK = 3072 /* bytes: whole groups of 3 */
+    };
+    char block[BLOCK / 3 * 4];
+    for (size_t i = 0; i < count; i += BLOCK) {
+        size_t part = count - i < BLOCK ? count - i : BLOCK;
+        base64_put(bytes + i, part, block);
+        text_print(out, "%.*s", (int)base64_length(part), block);
     }
 }
 

@@ -1,5 +1,6 @@
 #include "scene/gltf_file.h"
 
+#include "base/base64.h"
 #include "base/memory.h"
 
 #include <stdint.h>
@@ -96,21 +97,12 @@ Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t 
 
 char *gltf_file_data_uri(const char *type, const unsigned char *bytes, size_t count)
 {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    size_t room = sizeof "data:;base64," + strlen(type) + (count + 2) / 3 * 4;
+    size_t room = sizeof "data:;base64," + strlen(type) + base64_length(count);
     char *uri = memory_array(room, 1);
     if (!uri)
         return NULL;
-    char *out = uri + snprintf(uri, room, "data:%s;base64,", type);
-    for (size_t i = 0; i < count; i += 3) {
-        uint32_t group = (uint32_t)bytes[i] << 16;
-        group |= i + 1 < count ? (uint32_t)bytes[i + 1] << 8 : 0;
-        group |= i + 2 < count ? bytes[i + 2] : 0;
-        *out++ = digits[group >> 18];
-        *out++ = digits[group >> 12 & 63];
-        *out++ = i + 1 < count ? digits[group >> 6 & 63] : '=';
-        *out++ = i + 2 < count ? digits[group & 63] : '=';
-    }
+    int head = snprintf(uri, room, "data:%s;base64,", type);
+    base64_put(bytes, count, uri + head);
     return uri;
 }
 
