@@ -8,12 +8,31 @@
 #include <math.h>
 #include <string.h>
 
+const PixelFormat arithmetic_formats[ARITHMETIC_FORMATS] = {
+    FORMAT_RGBA8, FORMAT_RGBA16, FORMAT_RGBA16F, FORMAT_RGBA32F, FORMAT_RG32F, FORMAT_R32F};
+
+static bool is_blended(PixelFormat format)
+{
+    for (int i = 0; i < ARITHMETIC_FORMATS; i++)
+        if (arithmetic_formats[i] == format)
+            return true;
+    return false;
+}
+
+bool arithmetic_find_format(const char *name, PixelFormat *out)
+{
+    PixelFormat format;
+    if (!format_find(name, &format) || !is_blended(format))
+        return false;
+    *out = format;
+    return true;
+}
+
 const char *arithmetic_refuses(const Arithmetic *arithmetic, const BlendEquation *equation,
                                PixelFormat format)
 {
     const FormatInfo *info = format_info(format);
-    if (format != FORMAT_RGBA32F && format != FORMAT_RGBA16F && format != FORMAT_RGBA16 &&
-        format != FORMAT_RGBA8 && format != FORMAT_RG32F && format != FORMAT_R32F)
+    if (!is_blended(format))
         return "nothing is blended in this format: expected rgba8, rgba16, rgba16f, rgba32f, rg32f "
                "or r32f";
     if (arithmetic->kind == ARITHMETIC_STEPS && arithmetic->precision == PRECISION_CODES &&

@@ -14,6 +14,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum {
+    ARITHMETIC_FORMATS = 6
+};
+/* The formats that are blended, in the order of reports. */
+extern const PixelFormat arithmetic_formats[ARITHMETIC_FORMATS];
+
+/* The one of that name; false where there is none, and *out is left. */
+bool arithmetic_find_format(const char *name, PixelFormat *out);
+
 typedef enum ArithmeticKind {
     ARITHMETIC_EXACT = 0, /* the exact result of the stored operands, rounded once, to nearest even;
                            * of unorm formats the source is stored first */

@@ -159,11 +159,8 @@ Result vector_read_set(const VectorReader *reader, const char *text, VectorSet *
 Result vector_read_format(const VectorReader *reader, const char *text, PixelFormat *out)
 {
     char quote[VECTOR_QUOTE];
-    for (int i = 0; i < FORMAT_COUNT; i++)
-        if (strcmp(text, format_info((PixelFormat)i)->name) == 0) {
-            *out = (PixelFormat)i;
-            return RESULT_OK;
-        }
+    if (format_find(text, out))
+        return RESULT_OK;
     return vector_read_fail(reader,
                             "format '%s', expected rgba8, rgba16, rgba16f, rgba32f, rg32f or r32f",
                             vector_read_quote(text, quote));

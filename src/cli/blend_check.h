@@ -11,7 +11,7 @@ typedef struct BlendCheckCommand {
     Arithmetic against;
     BlendEquation equation;
     BlendApi api;     /* API_COUNT: any */
-    unsigned formats; /* bits 1 << place in blend_formats; 0: all */
+    unsigned formats; /* bits 1 << place in arithmetic_formats; 0: all */
     unsigned sets;    /* bits 1 << VectorSet; 0: all */
     uint32_t fail, warn;
     uint64_t limit, seed;

@@ -98,8 +98,8 @@ static error_t parse_api(const char *text, BlendApi *out)
 static error_t parse_format(const char *text, void *context)
 {
     BlendCheckCommand *command = context;
-    for (int i = 0; i < BLEND_FORMATS; i++)
-        if (strcmp(text, format_info(blend_formats[i])->name) == 0) {
+    for (int i = 0; i < ARITHMETIC_FORMATS; i++)
+        if (strcmp(text, format_info(arithmetic_formats[i])->name) == 0) {
             command->formats |= 1u << i;
             return 0;
         }

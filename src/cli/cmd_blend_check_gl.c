@@ -14,7 +14,7 @@ typedef struct GlRun {
     const BlendCheckCommand *command;
     LabDriver driver;
     GlLab *lab;
-    BlendReport reports[BLEND_FORMATS * EQUATION_COUNT];
+    BlendReport reports[ARITHMETIC_FORMATS * EQUATION_COUNT];
     size_t count;
     uint64_t changed, unexplained, values;
     int code;
@@ -78,9 +78,10 @@ static Result run_one(GlRun *run, PixelFormat format, const BlendEquation *equat
 static uint64_t count_vectors(const BlendCheckCommand *command)
 {
     uint64_t all = 0;
-    for (int i = 0; i < BLEND_FORMATS; i++)
+    for (int i = 0; i < ARITHMETIC_FORMATS; i++)
         for (int k = 0; has_format(command, i) && equation_at(command, k); k++) {
-            BlendDriverDesc desc = describe(command, blend_formats[i], equation_at(command, k));
+            BlendDriverDesc desc =
+                describe(command, arithmetic_formats[i], equation_at(command, k));
             all += blend_driver_vectors(&desc);
         }
     return all;
@@ -92,11 +93,11 @@ static Result run_all(GlRun *run)
     progress_before = 0;
     progress_begin("vectors", count_vectors(run->command));
     report_blend_row_head(stdout);
-    for (int i = 0; i < BLEND_FORMATS; i++)
+    for (int i = 0; i < ARITHMETIC_FORMATS; i++)
         for (int k = 0;
              has_format(run->command, i) && equation_at(run->command, k) && result == RESULT_OK;
              k++)
-            result = run_one(run, blend_formats[i], equation_at(run->command, k));
+            result = run_one(run, arithmetic_formats[i], equation_at(run->command, k));
     progress_end();
     return result;
 }

@@ -74,13 +74,8 @@ static const struct argp_option command_options[] = {
 
 static error_t parse_format(const char *text, PixelFormat *out)
 {
-    static const PixelFormat formats[] = {FORMAT_RGBA32F, FORMAT_RGBA16F, FORMAT_RGBA16,
-                                          FORMAT_RGBA8,   FORMAT_RG32F,   FORMAT_R32F};
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
-        if (strcmp(text, format_info(formats[i])->name) == 0) {
-            *out = formats[i];
-            return 0;
-        }
+    if (arithmetic_find_format(text, out))
+        return 0;
     return options_error("--format %s: expected rgba32f, rgba16f, rgba16, rgba8, rg32f or r32f",
                          text);
 }

@@ -80,20 +80,12 @@ static error_t set_set(const char *text, VectorsCommand *command)
     return options_error("--set %s: expected exhaustive, directed, random or sequences", text);
 }
 
-static const PixelFormat formats[] = {FORMAT_RGBA8,   FORMAT_RGBA16, FORMAT_RGBA16F,
-                                      FORMAT_RGBA32F, FORMAT_RG32F,  FORMAT_R32F};
-enum {
-    FORMATS = sizeof formats / sizeof *formats
-};
-
 static error_t set_format(const char *text, VectorsCommand *command)
 {
-    for (int i = 0; i < FORMATS; i++)
-        if (strcmp(text, format_info(formats[i])->name) == 0) {
-            command->header.spec.format = formats[i];
-            command->has_format = true;
-            return 0;
-        }
+    if (arithmetic_find_format(text, &command->header.spec.format)) {
+        command->has_format = true;
+        return 0;
+    }
     return options_error("--format %s: expected rgba8, rgba16, rgba16f, rgba32f, rg32f or r32f",
                          text);
 }
@@ -303,12 +295,13 @@ static Result choose(VectorsCommand *command)
 static void print_list(void)
 {
     printf("Sets\n");
-    for (int f = 0; f < FORMATS; f++)
+    for (int f = 0; f < ARITHMETIC_FORMATS; f++)
         for (int s = 0; s < VECTORS_SET_COUNT; s++) {
-            VectorSpec spec = {(VectorSet)s, formats[f], 0, 0};
+            VectorSpec spec = {(VectorSet)s, arithmetic_formats[f], 0, 0};
             if (vectors_check(&spec) != RESULT_OK)
                 continue;
-            printf("  %-8s %-11s", format_info(formats[f])->name, vectors_set_name(spec.set));
+            printf("  %-8s %-11s", format_info(arithmetic_formats[f])->name,
+                   vectors_set_name(spec.set));
             if (vectors_count(&spec))
                 printf("%" PRIu64 " vectors", vectors_count(&spec));
             else

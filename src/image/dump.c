@@ -23,16 +23,6 @@ static Result fail(const char *path, int number, const char *what)
     return result_fail(RESULT_BAD_INPUT, "%s: buffer %d: %s", path, number, what);
 }
 
-static bool find_format(const char *name, PixelFormat *out)
-{
-    for (int f = 0; f < FORMAT_COUNT; f++)
-        if (strcmp(format_info((PixelFormat)f)->name, name) == 0) {
-            *out = (PixelFormat)f;
-            return true;
-        }
-    return false;
-}
-
 static Result parse(const char *path, int number, const char *line, Header *out)
 {
     static const union {
@@ -46,7 +36,7 @@ static Result parse(const char *path, int number, const char *line, Header *out)
     if (fields != 6 || line[length])
         return fail(path, number,
                     "expected a line 'peel-dump 1 NAME FORMAT WIDTHxHEIGHT ROWS ORDER'");
-    if (!find_format(format, &out->format))
+    if (!format_find(format, &out->format))
         return fail(path, number, "its format is none of those of peel_dump.h");
     if (out->width < 1 || out->height < 1 || out->width > SIDE_MAX || out->height > SIDE_MAX)
         return fail(path, number, "its size is not 1 to 16384 pixels a side");

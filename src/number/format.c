@@ -3,6 +3,7 @@
 #include "number/op.h"
 
 #include <assert.h>
+#include <string.h>
 
 static const FormatInfo infos[FORMAT_COUNT + 1] = {
     [FORMAT_RGBA32F] = {"rgba32f", KIND_FLOAT, 4, 4, 0},
@@ -22,6 +23,16 @@ static const FormatInfo infos[FORMAT_COUNT + 1] = {
 const FormatInfo *format_info(PixelFormat format)
 {
     return &infos[format];
+}
+
+bool format_find(const char *name, PixelFormat *out)
+{
+    for (int i = 0; i < FORMAT_COUNT; i++)
+        if (strcmp(infos[i].name, name) == 0) {
+            *out = (PixelFormat)i;
+            return true;
+        }
+    return false;
 }
 
 size_t format_pixel_bytes(PixelFormat format)

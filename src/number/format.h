@@ -43,6 +43,9 @@ typedef struct FormatInfo {
 const FormatInfo *format_info(PixelFormat format); /* static */
 size_t format_pixel_bytes(PixelFormat format);
 
+/* The format of that name; false where there is none, and *out is left. */
+bool format_find(const char *name, PixelFormat *out);
+
 /* Channel `channel` of the pixel at `pixel`: its stored bits, in the low end of the result. */
 uint32_t format_bits(PixelFormat format, const void *pixel, int channel);
 void format_set_bits(PixelFormat format, void *pixel, int channel, uint32_t bits);

@@ -170,10 +170,10 @@ Result report_blend_list_json(const BlendWrongList *list, const char *path)
     for (size_t i = 0; i < arithmetic_count(); i++) {
         const ArithmeticInfo *info = arithmetic_info(i);
         json_t *object = json_object(), *wrong_in = json_array();
-        for (int k = 0; k < BLEND_FORMATS; k++)
-            if (arithmetic_is_wrong(info, blend_formats[k]))
+        for (int k = 0; k < ARITHMETIC_FORMATS; k++)
+            if (arithmetic_is_wrong(info, arithmetic_formats[k]))
                 document_append(&json, wrong_in,
-                                document_string(format_info(blend_formats[k])->name));
+                                document_string(format_info(arithmetic_formats[k])->name));
         document_put(&json, object, "name", document_string(info->name));
         document_put(&json, object, "what", document_string(info->what));
         document_put(&json, object, "wrong", json_boolean(info->wrong));

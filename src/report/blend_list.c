@@ -75,15 +75,16 @@ static void print_vector(const BlendWrong *row, FILE *out)
 /* One row for each format, of the equation with the simplest vector. */
 static void print_simplest(const BlendWrongList *list, const ArithmeticInfo *info, FILE *out)
 {
-    for (int i = 0; i < BLEND_FORMATS; i++) {
+    for (int i = 0; i < ARITHMETIC_FORMATS; i++) {
         int shown, all;
-        const BlendWrong *row = blend_wrong_simplest(list, info, blend_formats[i], &shown, &all);
+        const BlendWrong *row =
+            blend_wrong_simplest(list, info, arithmetic_formats[i], &shown, &all);
         if (row) {
             print_vector(row, out);
             fprintf(out, "             shown by %d of %d equations\n", shown, all);
         } else if (all) {
             fprintf(out, "    %-8s not shown by any of %d equations: right there\n",
-                    format_info(blend_formats[i])->name, all);
+                    format_info(arithmetic_formats[i])->name, all);
         }
     }
 }
@@ -93,10 +94,10 @@ static void print_info(const ArithmeticInfo *info, FILE *out)
 {
     fprintf(out, "  %s\n      %s\n", info->name, info->what);
     int count = 0;
-    for (int i = 0; i < BLEND_FORMATS && !info->wrong; i++)
-        if (arithmetic_is_wrong(info, blend_formats[i]))
+    for (int i = 0; i < ARITHMETIC_FORMATS && !info->wrong; i++)
+        if (arithmetic_is_wrong(info, arithmetic_formats[i]))
             fprintf(out, "%s%s", count++ ? ", " : "      wrong in ",
-                    format_info(blend_formats[i])->name);
+                    format_info(arithmetic_formats[i])->name);
     if (count)
         fputc('\n', out);
 }

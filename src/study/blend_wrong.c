@@ -5,9 +5,6 @@
 
 #include <stdlib.h>
 
-const PixelFormat blend_formats[BLEND_FORMATS] = {FORMAT_RGBA8,   FORMAT_RGBA16, FORMAT_RGBA16F,
-                                                  FORMAT_RGBA32F, FORMAT_RG32F,  FORMAT_R32F};
-
 /* The right arithmetics' results, the exact ones first. */
 typedef struct Right {
     unsigned char **pixels;
@@ -80,22 +77,23 @@ static int by_arithmetic(const void *a, const void *b)
     const BlendWrong *x = a, *y = b;
     if (x->info != y->info)
         return x->info < y->info ? -1 : 1;
-    for (int i = 0; x->format != y->format && i < BLEND_FORMATS; i++)
-        if (blend_formats[i] == x->format || blend_formats[i] == y->format)
-            return blend_formats[i] == x->format ? -1 : 1;
+    for (int i = 0; x->format != y->format && i < ARITHMETIC_FORMATS; i++)
+        if (arithmetic_formats[i] == x->format || arithmetic_formats[i] == y->format)
+            return arithmetic_formats[i] == x->format ? -1 : 1;
     return (int)x->equation - (int)y->equation;
 }
 
 Result blend_wrong_list(unsigned formats, EquationId equation, size_t effort, BlendWrongList *out)
 {
     *out = (BlendWrongList){
-        memory_array(arithmetic_count() * BLEND_FORMATS * EQUATION_COUNT, sizeof *out->rows), 0};
+        memory_array(arithmetic_count() * ARITHMETIC_FORMATS * EQUATION_COUNT, sizeof *out->rows),
+        0};
     Result result = out->rows ? RESULT_OK : RESULT_NO_MEMORY;
-    for (int i = 0; i < BLEND_FORMATS; i++)
+    for (int i = 0; i < ARITHMETIC_FORMATS; i++)
         for (int k = 0; k < EQUATION_COUNT && result == RESULT_OK; k++)
             if ((!formats || formats >> i & 1) &&
                 (equation == EQUATION_COUNT || (int)equation == k))
-                result = add_pair(blend_formats[i], (EquationId)k, effort, out);
+                result = add_pair(arithmetic_formats[i], (EquationId)k, effort, out);
     if (result == RESULT_OK)
         qsort(out->rows, out->count, sizeof *out->rows, by_arithmetic);
     else

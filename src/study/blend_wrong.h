@@ -21,14 +21,8 @@ typedef struct BlendWrongList {
     size_t count;
 } BlendWrongList;
 
-enum {
-    BLEND_FORMATS = 6
-};
-/* The formats that are blended, in the order of reports. */
-extern const PixelFormat blend_formats[BLEND_FORMATS];
-
-/* formats: bits 1 << place in blend_formats, 0 for all; equation EQUATION_COUNT: all that have a
- * name. effort: vectors to look at for each pair. The caller frees with blend_wrong_free. */
+/* formats: bits 1 << place in arithmetic_formats, 0 for all; equation EQUATION_COUNT: all that have
+ * a name. effort: vectors to look at for each pair. The caller frees with blend_wrong_free. */
 Result blend_wrong_list(unsigned formats, EquationId equation, size_t effort, BlendWrongList *out);
 void blend_wrong_free(BlendWrongList *list);
 

@@ -46,9 +46,9 @@ enum {
 
 static PixelFormat find_format(const char *name)
 {
-    for (int i = 0; i < FORMAT_COUNT; i++)
-        if (strcmp(format_info((PixelFormat)i)->name, name) == 0)
-            return (PixelFormat)i;
+    PixelFormat format;
+    if (format_find(name, &format))
+        return format;
     fprintf(stderr, "no format %s\n", name);
     exit(1);
 }

@@ -60,7 +60,7 @@ END_TEST
 START_TEST(test_every_equation)
 {
     for (int e = 0; e < EQUATION_COUNT; e++) {
-        run(lab_experiments(driver), blend_formats[_i], (EquationId)e, ~0u, LIMIT);
+        run(lab_experiments(driver), arithmetic_formats[_i], (EquationId)e, ~0u, LIMIT);
         assert_driver();
         blend_report_free(&report);
     }
@@ -124,7 +124,7 @@ int main(void)
     tcase_set_timeout(tcase, 400);
     tcase_add_checked_fixture(tcase, labs_open, labs_close);
     tcase_add_test(tcase, test_all_triples);
-    tcase_add_loop_test(tcase, test_every_equation, 0, BLEND_FORMATS);
+    tcase_add_loop_test(tcase, test_every_equation, 0, ARITHMETIC_FORMATS);
     tcase_add_test(tcase, test_faulty);
     tcase_add_test(tcase, test_stored_otherwise);
     suite_add_tcase(suite, tcase);

@@ -135,10 +135,9 @@ static void clear(const char *target, PixelFormat format, void *pixel)
 
 static PixelFormat find_format(const char *name)
 {
-    for (int i = 0; i < FORMAT_COUNT; i++)
-        if (strcmp(format_info((PixelFormat)i)->name, name) == 0)
-            return (PixelFormat)i;
-    return FORMAT_NONE;
+    PixelFormat format = FORMAT_NONE;
+    format_find(name, &format);
+    return format;
 }
 
 static void replay_step(const HistoryStep *step, PixelFormat format, void *pixel)

@@ -78,7 +78,7 @@ static bool gives_all(size_t i)
 START_TEST(test_every_name)
 {
     static const EquationId equations[] = {EQUATION_UNDER, EQUATION_OVER};
-    PixelFormat format = blend_formats[_i];
+    PixelFormat format = arithmetic_formats[_i];
     make_vectors(format);
     for (size_t e = 0; e < 2; e++)
         for (size_t i = 0; i < arithmetic_count(); i++) {
@@ -109,9 +109,9 @@ START_TEST(test_wrong_is_caught)
     for (size_t i = 0; i < arithmetic_count(); i++) {
         const ArithmeticInfo *info = arithmetic_info(i);
         bool caught = !info->wrong;
-        for (int f = 0; f < BLEND_FORMATS && !caught; f++)
+        for (int f = 0; f < ARITHMETIC_FORMATS && !caught; f++)
             for (int e = 0; e < EQUATION_COUNT && !caught; e++) {
-                PixelFormat format = blend_formats[f];
+                PixelFormat format = arithmetic_formats[f];
                 const BlendEquation *equation = &equation_info((EquationId)e)->equation;
                 if (arithmetic_refuses(&info->arithmetic, equation, format))
                     continue;
@@ -131,7 +131,7 @@ END_TEST
 START_TEST(test_wrong_in_longer_formats)
 {
     static const char *const names[] = {"half", "half-fused", "half-truncated"};
-    PixelFormat format = blend_formats[_i];
+    PixelFormat format = arithmetic_formats[_i];
     bool longer = format != FORMAT_RGBA8 && format != FORMAT_RGBA16F;
     make_vectors(format);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -383,7 +383,7 @@ END_TEST
 START_TEST(test_rules_keep)
 {
     static const char *const names[] = {"driver", "exact", "fused", "separate"};
-    PixelFormat format = blend_formats[_i];
+    PixelFormat format = arithmetic_formats[_i];
     make_vectors(format);
     for (int e = 0; e < EQUATION_COUNT; e++)
         for (size_t i = format_info(format)->channels < 4; i < 4; i++) {
@@ -440,9 +440,9 @@ int main(void)
     Suite *suite = suite_create("blend_check");
     TCase *tcase = tcase_create("check");
     tcase_set_timeout(tcase, 240);
-    tcase_add_loop_test(tcase, test_every_name, 0, BLEND_FORMATS);
+    tcase_add_loop_test(tcase, test_every_name, 0, ARITHMETIC_FORMATS);
     tcase_add_test(tcase, test_wrong_is_caught);
-    tcase_add_loop_test(tcase, test_wrong_in_longer_formats, 0, BLEND_FORMATS);
+    tcase_add_loop_test(tcase, test_wrong_in_longer_formats, 0, ARITHMETIC_FORMATS);
     tcase_add_test(tcase, test_list);
     tcase_add_test(tcase, test_without_a_name);
     tcase_add_test(tcase, test_color_and_alpha);
@@ -452,7 +452,7 @@ int main(void)
     tcase_add_test(tcase, test_rules_floats);
     tcase_add_test(tcase, test_rules_keep_one_channel);
     tcase_add_test(tcase, test_rules_unstated);
-    tcase_add_loop_test(tcase, test_rules_keep, 0, BLEND_FORMATS);
+    tcase_add_loop_test(tcase, test_rules_keep, 0, ARITHMETIC_FORMATS);
     tcase_add_test(tcase, test_sequences);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
