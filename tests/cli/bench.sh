@@ -5,23 +5,6 @@ set -u
 peel=$1
 . "$(dirname "$0")/checks.sh"
 
-check() {
-    what=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $what: $*"
-        failed=$((failed + 1))
-    fi
-}
-
-# json WHAT EXPRESSION: true of the document `d` in bench.json.
-json() {
-    exits 0 "$1" node -e "const d = JSON.parse(require('fs').readFileSync('bench.json'));
-        process.exit($2 ? 0 : 1)"
-}
-
 # refused WHAT ARGUMENT...: one line and exit code 4.
 refused() {
     what=$1
@@ -36,21 +19,21 @@ cp output table
 check 'rows are announced' grep -q '^32 rows, 1 runs each$' table
 check 'ratios' grep -q '^gl-early / ref: geometric mean' table
 check 'no line is wide' awk 'length > 100 { exit 1 }' table
-json 'rows' 'd.rows.length === 32'
-json 'every combination' 'new Set(d.rows.map(r => [r.scene, r.passes, r.threads, r.renderer]
+json_holds 'rows' bench.json 'd.rows.length === 32'
+json_holds 'every combination' bench.json 'new Set(d.rows.map(r => [r.scene, r.passes, r.threads, r.renderer]
     .join())).size === 32'
-json 'complete' 'd.rows.every(r => r.scene && r.size === "64x36" && r.method === "peel" &&
+json_holds 'complete' bench.json 'd.rows.every(r => r.scene && r.size === "64x36" && r.method === "peel" &&
     r.lights === 1 && r.formats === "default" && r.cpu_ms > 0 && r.wall_ms > 0 && r.spread === 0 &&
     r.rmse !== null && r.max_abs >= r.rmse && r.peak_bytes > 0)'
-json 'the same images' 'd.summary.differing_rows === 0 && d.rows.every(r => r.differing === 0)'
-json 'errors fall with passes' 'd.rows.every(r => r.renderer === "truth" || r.passes === 2 ||
+json_holds 'the same images' bench.json 'd.summary.differing_rows === 0 && d.rows.every(r => r.differing === 0)'
+json_holds 'errors fall with passes' bench.json 'd.rows.every(r => r.renderer === "truth" || r.passes === 2 ||
     r.rmse > d.rows.find(s => s.passes === 2 && s.renderer === r.renderer && s.scene === r.scene)
     .rmse)'
-json 'the same error' 'd.rows.every(r => r.renderer === "truth" || r.rmse === d.rows.find(s =>
+json_holds 'the same error' bench.json 'd.rows.every(r => r.renderer === "truth" || r.rmse === d.rows.find(s =>
     s.renderer === "ref" && s.scene === r.scene && s.passes === r.passes).rmse)'
-json 'truth' 'd.rows.every(r => r.renderer !== "truth" || r.rmse === 0)'
-json 'the front' 'd.rows.some(r => r.pareto) && d.rows.some(r => !r.pareto)'
-json 'cells' 'd.summary.gl_to_ref.cells === 8 && d.summary.gl_to_ref.tests.length === 4'
+json_holds 'truth' bench.json 'd.rows.every(r => r.renderer !== "truth" || r.rmse === 0)'
+json_holds 'the front' bench.json 'd.rows.some(r => r.pareto) && d.rows.some(r => !r.pareto)'
+json_holds 'cells' bench.json 'd.summary.gl_to_ref.cells === 8 && d.summary.gl_to_ref.tests.length === 4'
 for plot in passes triangles threads error-0; do
     check "plot $plot" grep -q '<svg' page/$plot.svg
     check "$plot is on the page" grep -q "src=\"$plot.svg\"" page/index.html
@@ -60,17 +43,17 @@ check 'no plot of what does not vary' test ! -e page/lights.svg
 # Formats, methods and a limit that needs queries.
 exits 0 'formats' "$peel" bench tutorial --size 48x27 --passes auto --lights 2 --threads 1 \
     --runs 1 --formats default,seed,compact+rgba8+d16 --method peel,linked-list --json bench.json
-json 'formats' 'd.rows.length === 18 && new Set(d.rows.map(r => r.formats)).size === 3'
-json 'formats agree' 'd.summary.differing_rows === 0 && d.rows.every(r => r.passes === "auto")'
+json_holds 'formats' bench.json 'd.rows.length === 18 && new Set(d.rows.map(r => r.formats)).size === 3'
+json_holds 'formats agree' bench.json 'd.summary.differing_rows === 0 && d.rows.every(r => r.passes === "auto")'
 exits 0 'without truth' "$peel" bench tutorial --size 16x9 --runs 2 --no-error --simd scalar \
     --fma off --json bench.json
-json 'without truth' 'd.rows.every(r => r.rmse === null && !r.pareto)'
+json_holds 'without truth' bench.json 'd.rows.every(r => r.rmse === null && !r.pareto)'
 exits 0 'the preset' "$peel" bench --preset paper --size 16x9 --passes 1 --lights 0 --threads 1 \
     --renderers ref --runs 1 --json bench.json
-json 'the preset' 'd.rows.map(r => r.scene).join() === "teapot_hall,teapot_hall_stress"'
+json_holds 'the preset' bench.json 'd.rows.map(r => r.scene).join() === "teapot_hall,teapot_hall_stress"'
 
 exits 0 'roofline' "$peel" bench --roofline --threads 1 --json bench.json
-json 'roofline' 'd.threads === 1 && d.widths.length > 0 && d.widths.every(w =>
+json_holds 'roofline' bench.json 'd.threads === 1 && d.widths.length > 0 && d.widths.every(w =>
     w.muladd_flops.one_thread > 0 && w.lighting.share_of_muladd_peak > 0)'
 exits 0 'help' "$peel" bench --help
 check 'help' grep -q -- '--roofline' output

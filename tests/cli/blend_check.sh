@@ -4,28 +4,6 @@ set -u
 peel=$1
 . "$(dirname "$0")/checks.sh"
 
-# has WHAT PATTERN
-has() {
-    if grep -q -- "$2" output; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $1: no '$2' in:"
-        head -40 output
-        failed=$((failed + 1))
-    fi
-}
-
-# narrow WHAT: no line is wider than 100 columns.
-narrow() {
-    if awk 'length > 100 { exit 1 }' output; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $1: a line is longer than 100 columns"
-        awk 'length > 100' output
-        failed=$((failed + 1))
-    fi
-}
-
 # refuses WHAT PATTERN ARGUMENT...: exit 4 and one line that matches.
 refuses() {
     what=$1
@@ -39,12 +17,6 @@ refuses() {
         echo "FAIL $what: more than one line"
         failed=$((failed + 1))
     fi
-}
-
-# json WHAT EXPRESSION: true of the document `d` in out.json.
-json() {
-    exits 0 "$1" node -e "const d = JSON.parse(require('fs').readFileSync('out.json'));
-        process.exit($2 ? 0 : 1)"
 }
 
 # make FILE ARGUMENT...
@@ -68,15 +40,15 @@ cp output whole
 exits 1 'all indented as the first' grep -q -E '^ [a-z]|: $' whole
 cp whole output
 narrow 'a right arithmetic'
-json 'a right arithmetic' 'd.exit_code === 0 && d.reports[0].unexplained === 0'
-json 'a right arithmetic' 'd.reports[0].verdict === "named" && d.reports[0].values === 16000'
-json 'a right arithmetic' 'd.reports[0].rules.every(r => r.outside === 0 && r.judged > 0)'
+json_holds 'a right arithmetic' out.json 'd.exit_code === 0 && d.reports[0].unexplained === 0'
+json_holds 'a right arithmetic' out.json 'd.reports[0].verdict === "named" && d.reports[0].values === 16000'
+json_holds 'a right arithmetic' out.json 'd.reports[0].rules.every(r => r.outside === 0 && r.judged > 0)'
 
 make wrong.jsonl --set random --format rgba8 --count 4000 --arithmetic codes-shift
 exits 2 'a wrong arithmetic' "$peel" blend check wrong.jsonl --json out.json
 has 'a wrong arithmetic' '^arithmetic: codes-shift$'
 has 'a wrong arithmetic' '^verdict: a WRONG arithmetic$'
-json 'a wrong arithmetic' 'd.reports[0].verdict === "wrong" && d.exit_code === 2'
+json_holds 'a wrong arithmetic' out.json 'd.reports[0].verdict === "wrong" && d.exit_code === 2'
 
 make unnamed.bin --set random --format rgba16f --count 4000 --arithmetic store=up
 exits 1 'no name' "$peel" blend check unnamed.bin
@@ -98,7 +70,7 @@ has 'one value' '^1 of 16,000 values unexplained$'
 has 'one value' 'random vector 77, alpha: source .*, before '
 has 'one value' '; expected .*, 0x.*; 9 codes apart'
 narrow 'one value'
-json 'one value' 'd.reports[0].arithmetics.find(a => a.name === "codes-nearest").simplest.index === 77'
+json_holds 'one value' out.json 'd.reports[0].arithmetics.find(a => a.name === "codes-nearest").simplest.index === 77'
 exits 2 'against' "$peel" blend check one.csv --against codes-nearest
 has 'against' '^against codes-nearest: 1 of 16,000 values differ, by 9 codes at most$'
 exits 2 'under the threshold' "$peel" blend check one.csv --against codes-nearest --fail 8
@@ -113,9 +85,9 @@ make truncated.csv --set random --format rgba8 --count 2000 --arithmetic roundin
 exits 1 'any API' "$peel" blend check truncated.csv
 exits 1 'OpenGL' "$peel" blend check truncated.csv --api gl
 exits 2 'Direct3D' "$peel" blend check truncated.csv --api d3d11 --against exact --json out.json
-json 'Direct3D' 'd.reports[0].api === "d3d11" && d.reports[0].against === "exact"'
-json 'Direct3D' 'd.reports[0].rules.every(r => r.judged === 0 || r.example !== null)'
-json 'Direct3D' 'Number.isInteger(d.reports[0].rules.find(r => r.example).example.got)'
+json_holds 'Direct3D' out.json 'd.reports[0].api === "d3d11" && d.reports[0].against === "exact"'
+json_holds 'Direct3D' out.json 'd.reports[0].rules.every(r => r.judged === 0 || r.example !== null)'
+json_holds 'Direct3D' out.json 'Number.isInteger(d.reports[0].rules.find(r => r.example).example.got)'
 
 # ---- sequences
 
@@ -123,7 +95,7 @@ make sequences.csv --set sequences --format rgba16f --count 60 --arithmetic sepa
 exits 0 'sequences' "$peel" blend check sequences.csv --json out.json
 has 'sequences' 'inside the bound of any sane arithmetic: 240 of 240 values'
 narrow 'sequences'
-json 'sequences' 'd.sequences === 60 && d.outside === 0 && d.exit_code === 0'
+json_holds 'sequences' out.json 'd.sequences === 60 && d.outside === 0 && d.exit_code === 0'
 make swapped.csv --set sequences --format rgba8 --count 60 --arithmetic factors-swapped
 exits 2 'swapped sequences' "$peel" blend check swapped.csv
 has 'swapped sequences' 'factors-swapped: a WRONG arithmetic'
@@ -134,8 +106,8 @@ exits 0 'list' "$peel" blend check --list --format rgba8 --equation under --json
 has 'list' '^  codes-shift$'
 has 'list' 'rgba8    under, alpha'
 narrow 'list'
-json 'list' 'd.arithmetics.some(a => a.wrong) && d.arithmetics.some(a => !a.wrong)'
-json 'list' 'd.shown_by.filter(r => r.vector !== null).length > 10'
+json_holds 'list' out.json 'd.arithmetics.some(a => a.wrong) && d.arithmetics.some(a => !a.wrong)'
+json_holds 'list' out.json 'd.shown_by.filter(r => r.vector !== null).length > 10'
 
 # ---- the driver
 
@@ -143,7 +115,7 @@ exits 0 'OSMesa' "$peel" blend check --gl --limit 2000 --format rgba8,rgba16f,r3
 has 'OSMesa' '^rgba16f  under .* driver .* 0 within$'
 has 'OSMesa' '^0 unexplained of '
 narrow 'OSMesa'
-json 'OSMesa' 'd.reports.length === 33 && d.reports.every(r => r.unexplained === 0)'
+json_holds 'OSMesa' out.json 'd.reports.length === 33 && d.reports.every(r => r.unexplained === 0)'
 exits 0 'unfused' "$peel" blend check --gl --fma off --limit 2000 --format rgba16f,r32f
 has 'unfused' 'multiply-adds: unfused'
 has 'unfused' '^0 unexplained of '

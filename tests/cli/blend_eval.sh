@@ -5,28 +5,6 @@ set -u
 peel=$1
 . "$(dirname "$0")/checks.sh"
 
-# shows WHAT PATTERN: a line of `output` has the pattern.
-shows() {
-    if grep -q -- "$2" output; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $1: no '$2' in:"
-        head -20 output
-        failed=$((failed + 1))
-    fi
-}
-
-# narrow WHAT WIDTH
-narrow() {
-    if awk -v most="$2" 'length > most { exit 1 }' output; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $1: wider than $2 columns:"
-        awk -v most="$2" 'length > most' output
-        failed=$((failed + 1))
-    fi
-}
-
 # holds WHAT CONDITION: a Python expression about the JSON document d in eval.json.
 holds() {
     exits 0 "$1" python3 -c "import json, sys
@@ -44,7 +22,7 @@ refused() {
     exits 4 "$name" "$peel" blend eval "$@"
     exits 0 "$name: one line" test "$(grep -c '^peel: ' output)" -eq "$(wc -l <output)"
     exits 4 "$name" "$peel" blend eval "$@"
-    shows "$name" "$pattern"
+    has "$name" "$pattern"
 }
 
 # ---- the help's examples, and what it says of them ----
@@ -56,15 +34,15 @@ sed -n 's/^  peel blend eval/"$peel" blend eval/p' help >examples
 exits 0 '64 of 63.749' grep -q '63.749/255 arrives' help
 sed -n 1p examples >example.sh
 exits 0 'first example' env peel="$peel" sh example.sh
-shows 'first example' 'C = C + T\*a\*c'
-shows 'first example' ' T\*a\*c .*~63.749 .* 16256/65025$'
-shows 'first example' ' C stored .* 64 *+0.251 *+0.00098 *64/255$'
-shows 'first example' '  green .* 64 *+0.251 .*16256/65025$'
-shows 'first example' '^The same layers under each other'
+has 'first example' 'C = C + T\*a\*c'
+has 'first example' ' T\*a\*c .*~63.749 .* 16256/65025$'
+has 'first example' ' C stored .* 64 *+0.251 *+0.00098 *64/255$'
+has 'first example' '  green .* 64 *+0.251 .*16256/65025$'
+has 'first example' '^The same layers under each other'
 exits 0 '16/81' grep -q '16/81, and stores 1.9 units' help
 sed -n 2p examples >example.sh
 exits 0 'second example' env peel="$peel" sh example.sh
-shows 'second example' '  alpha .*-1.9 .* 16/81$'
+has 'second example' '  alpha .*-1.9 .* 16/81$'
 exits 0 'a line a layer' test "$(grep -c '^ *[1-4]  *1/3  *0\.' output)" -eq 4
 
 # ---- layouts ----
@@ -77,12 +55,12 @@ exits 0 '80 columns, brief' "$peel" blend eval --width 80 --brief 1/7,1/7,1/7,1/
 narrow '80 columns, brief' 80
 exits 0 '80 columns, all' "$peel" blend eval --width 80 --arithmetic all --format rgba8 '#ff000080'
 narrow '80 columns, all' 80
-shows 'all' '^  codes-shift (wrong)'
-shows 'no room' 'have no room for the steps'
+has 'all' '^  codes-shift (wrong)'
+has 'no room' 'have no room for the steps'
 exits 0 '200 columns' "$peel" blend eval --width 200 --arithmetic exact,separate,fused,driver \
     1,0,0,1/2 0,1,0,1/3
 narrow '200 columns' 200
-shows 'side by side' ' exact .*ULP .*separate .*ULP .*fused .*ULP .*driver .*ULP'
+has 'side by side' ' exact .*ULP .*separate .*ULP .*fused .*ULP .*driver .*ULP'
 exits 0 'no colours in a pipe' test "$(tr -cd '\033' <output | wc -c)" -eq 0
 if command -v script >/dev/null; then
     exits 0 'a terminal' env TERM=xterm NO_COLOR= script -qec "'$peel' blend eval 1,0,0,1/3" \
@@ -103,24 +81,24 @@ for equation in under over over-premultiplied over-transmittance add max weighte
 done
 exits 0 'named and by fields' "$peel" blend eval --arithmetic \
     exact,precision=half,store=truncate,separate 1/3,0,0,1/3
-shows 'named and by fields' '3 arithmetics'
-shows 'named and by fields' '^  precision=half,store=truncate '
+has 'named and by fields' '3 arithmetics'
+has 'named and by fields' '^  precision=half,store=truncate '
 exits 0 'back to front' "$peel" blend eval --equation over 1,0,0,1/2 0,1,0,1/4
-shows 'back to front' 'back to front'
-shows 'what layers let through' '  let through .*3/8$'
+has 'back to front' 'back to front'
+has 'what layers let through' '  let through .*3/8$'
 exits 0 'the last first' test "$(grep '^Layer' output | head -1 | cut -c1-12)" = 'Layer 2 of 2'
 exits 0 'negative numbers' "$peel" blend eval --destination -1,0,0,1 -0x1p-1,-.5,0,1/2 -inf,0,0,1
-shows 'negative numbers' 'c = -0.5, -0.5, 0; a = 0.5'
+has 'negative numbers' 'c = -0.5, -0.5, 0; a = 0.5'
 exits 0 'premultiplied' "$peel" blend eval --premultiplied 1/2,0,0,1/2
-shows 'premultiplied' 'C = C + T\*s'
+has 'premultiplied' 'C = C + T\*s'
 
 # ---- layers of files ----
 
 printf '# layers\r\n1,0,0,1/2\r\n\n#00ff0080\n0.5 0.5 0.5 0.5' >layers.txt
 exits 0 'a file' "$peel" blend eval --layers layers.txt
-shows 'a file' '3 layers'
+has 'a file' '3 layers'
 exits 0 'standard input' sh -c "'$peel' blend eval --layers - <layers.txt"
-shows 'standard input' '3 layers'
+has 'standard input' '3 layers'
 yes '#10203040' | head -4096 >many.txt
 exits 0 'many layers' "$peel" blend eval --layers many.txt --format rgba8
 exits 0 'brief by itself' test "$(grep -c '^ *[0-9][0-9]*  *64/255' output)" -eq 4096

@@ -20,3 +20,43 @@ exits() {
         failed=$((failed + 1))
     fi
 }
+
+# check WHAT COMMAND...: it succeeds.
+check() {
+    what=$1
+    shift
+    if "$@"; then
+        passed=$((passed + 1))
+    else
+        echo "FAIL $what: $*"
+        failed=$((failed + 1))
+    fi
+}
+
+# has WHAT PATTERN [FILE]: the file, `output` unless it is given, has a line that matches.
+has() {
+    if grep -q -- "$2" "${3-output}"; then
+        passed=$((passed + 1))
+    else
+        echo "FAIL $1: no '$2' in ${3-output}:"
+        head -40 "${3-output}"
+        failed=$((failed + 1))
+    fi
+}
+
+# narrow WHAT [COLUMNS]: no line of `output` is wider, than 100 columns unless it is said.
+narrow() {
+    if awk -v most="${2-100}" 'length > most { exit 1 }' output; then
+        passed=$((passed + 1))
+    else
+        echo "FAIL $1: wider than ${2-100} columns:"
+        awk -v most="${2-100}" 'length > most' output
+        failed=$((failed + 1))
+    fi
+}
+
+# json_holds WHAT FILE EXPRESSION: JavaScript of d, the document.
+json_holds() {
+    exits 0 "$1" node -e "const d = JSON.parse(require('fs').readFileSync('$2'));
+        process.exit($3 ? 0 : 1)"
+}

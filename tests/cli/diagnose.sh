@@ -6,17 +6,6 @@ peel=$1
 source=$2
 . "$(dirname "$0")/checks.sh"
 
-check() {
-    what=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $what: $*"
-        failed=$((failed + 1))
-    fi
-}
-
 # key KEY...: the JSON's value under these keys.
 key() {
     python3 -c 'import json, sys

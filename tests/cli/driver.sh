@@ -4,50 +4,24 @@ set -u
 peel=$1
 . "$(dirname "$0")/checks.sh"
 
-# has WHAT PATTERN [FILE]
-has() {
-    if grep -q -- "$2" "${3-output}"; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $1: no '$2' in ${3-output}"
-        failed=$((failed + 1))
-    fi
-}
-
-# narrow WHAT: no line of the table is wider than 100 columns.
-narrow() {
-    if awk 'length > 100 { exit 1 }' output; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $1: a line is longer than 100 columns"
-        failed=$((failed + 1))
-    fi
-}
-
-# json WHAT EXPRESSION: true of the document `d` in driver.json.
-json() {
-    exits 0 "$1" node -e "const d = JSON.parse(require('fs').readFileSync('driver.json'));
-        process.exit($2 ? 0 : 1)"
-}
-
 for gl in osmesa egl; do
     exits 0 "$gl" "$peel" driver --gl $gl --json driver.json
     has "$gl" 'renderer: llvmpipe'
     has "$gl" '^EXACT$'
     has "$gl" 'upper-left'
     narrow "$gl"
-    json "$gl" 'd.differ === 0 && d.broken === 0 && d.untested > 0 && d.exact > 90'
-    json "$gl" 'd.rules.length === d.exact + d.untested && d.gl.renderer.startsWith("llvmpipe")'
-    json "$gl" 'd.rules.every(r => (r.verdict === "exact") === (r.samples > 0))'
+    json_holds "$gl" driver.json 'd.differ === 0 && d.broken === 0 && d.untested > 0 && d.exact > 90'
+    json_holds "$gl" driver.json 'd.rules.length === d.exact + d.untested && d.gl.renderer.startsWith("llvmpipe")'
+    json_holds "$gl" driver.json 'd.rules.every(r => (r.verdict === "exact") === (r.samples > 0))'
 
     exits 2 "$gl, softpipe" env GALLIUM_DRIVER=softpipe "$peel" driver --gl $gl --json driver.json
     has "$gl, softpipe" 'renderer: softpipe'
     has "$gl, softpipe" 'multiply-adds: neither'
     has "$gl, softpipe" '^BROKEN: .*peels-d16'
     narrow "$gl, softpipe"
-    json "$gl, softpipe" 'd.gl.arithmetic === "neither" && d.differ > 20 && d.broken > 0'
-    json "$gl, softpipe" 'd.rules.every(r => (r.example !== null) === (r.differing > 0))'
-    json "$gl, softpipe" 'd.rules.find(r => r.id === "add").verdict === "exact"'
+    json_holds "$gl, softpipe" driver.json 'd.gl.arithmetic === "neither" && d.differ > 20 && d.broken > 0'
+    json_holds "$gl, softpipe" driver.json 'd.rules.every(r => (r.example !== null) === (r.differing > 0))'
+    json_holds "$gl, softpipe" driver.json 'd.rules.find(r => r.id === "add").verdict === "exact"'
 done
 
 exits 0 'unfused' "$peel" driver --fma off --threads 1

@@ -6,17 +6,6 @@ peel=$1
 source=$2
 . "$(dirname "$0")/checks.sh"
 
-check() {
-    what=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $what: $*"
-        failed=$((failed + 1))
-    fi
-}
-
 exits 0 'the slice' "$peel" hard --ci --json hard.json --report page
 cat output
 check 'every expectation holds' grep -q '^AS EXPECTED$' output
