@@ -3,6 +3,7 @@
  * tests/unit/test_arithmetic_steps.c. With flush in flushing mode, without it outside. */
 #include "blend/arithmetic_parts.h"
 #include "number/blend_codes.h"
+#include "number/blend_float.h"
 #include "number/op.h"
 
 #include <math.h>
@@ -14,51 +15,9 @@ enum {
     BLOCK = 64 /* pixels whose sums wait to be stored */
 };
 
-ALWAYS_INLINE float add(bool flush, float a, float b)
-{
-    return flush ? op_add(a, b) : a + b;
-}
-ALWAYS_INLINE float mul(bool flush, float a, float b)
-{
-    return flush ? op_mul(a, b) : a * b;
-}
 ALWAYS_INLINE float muladd(bool flush, float a, float b, float c)
 {
     return flush ? op_fma(a, b, c) : fmaf(a, b, c);
-}
-
-ALWAYS_INLINE float factor_of(bool flush, const ChannelEquation *part, BlendFactor factor, float s,
-                              float d, float source_alpha, float destination_alpha)
-{
-    float room;
-    switch (factor) {
-    case FACTOR_ZERO:
-        return 0.0f;
-    case FACTOR_SRC_COLOR:
-        return s;
-    case FACTOR_ONE_MINUS_SRC_COLOR:
-        return add(flush, 1.0f, -s);
-    case FACTOR_DST_COLOR:
-        return d;
-    case FACTOR_ONE_MINUS_DST_COLOR:
-        return add(flush, 1.0f, -d);
-    case FACTOR_SRC_ALPHA:
-        return source_alpha;
-    case FACTOR_ONE_MINUS_SRC_ALPHA:
-        return add(flush, 1.0f, -source_alpha);
-    case FACTOR_DST_ALPHA:
-        return destination_alpha;
-    case FACTOR_ONE_MINUS_DST_ALPHA:
-        return add(flush, 1.0f, -destination_alpha);
-    case FACTOR_SRC_ALPHA_SATURATE:
-        if (part->alpha)
-            return 1.0f;
-        /* Rounding keeps the order, so the rounded difference tells what the exact one does. */
-        room = add(flush, 1.0f, -destination_alpha);
-        return source_alpha < room ? source_alpha : room;
-    default:
-        return 1.0f;
-    }
 }
 
 ALWAYS_INLINE float sum_of(bool flush, bool fused, const ChannelEquation *part, float s, float d,
@@ -66,17 +25,19 @@ ALWAYS_INLINE float sum_of(bool flush, bool fused, const ChannelEquation *part, 
 {
     if (blend_func_extreme(part->func))
         return (part->func == BLEND_FUNC_MAX ? s > d : s < d) ? s : d;
-    float f = factor_of(flush, part, part->source, s, d, source_alpha, destination_alpha);
-    float g = factor_of(flush, part, part->destination, s, d, source_alpha, destination_alpha);
+    float f =
+        blend_float_factor(flush, part->alpha, part->source, s, d, source_alpha, destination_alpha);
+    float g = blend_float_factor(flush, part->alpha, part->destination, s, d, source_alpha,
+                                 destination_alpha);
     if (part->func == BLEND_FUNC_REVERSE_SUBTRACT)
         s = -s;
     if (part->func == BLEND_FUNC_SUBTRACT)
         d = -d;
     if (!fused)
-        return add(flush, mul(flush, s, f), mul(flush, d, g));
+        return blend_float_add(flush, blend_float_mul(flush, s, f), blend_float_mul(flush, d, g));
     if (part->destination == FACTOR_ONE)
         return muladd(flush, s, f, d);
-    return muladd(flush, d, g, mul(flush, s, f));
+    return muladd(flush, d, g, blend_float_mul(flush, s, f));
 }
 
 typedef struct FloatBlend {

@@ -4,6 +4,7 @@
 #include "number/blend.h"
 
 #include "number/blend_codes.h"
+#include "number/blend_float.h"
 #include "number/op.h"
 
 #include <assert.h>
@@ -65,57 +66,11 @@ ALWAYS_INLINE Part part_of(const BlendEquation *equation, int channels, bool alp
 /* ---- floats; with flush in flushing mode, without it outside ----------------------------------
  */
 
-ALWAYS_INLINE float add(bool flush, float a, float b)
-{
-    return flush ? op_add(a, b) : a + b;
-}
-ALWAYS_INLINE float sub(bool flush, float a, float b)
-{
-    return flush ? op_sub(a, b) : a - b;
-}
-ALWAYS_INLINE float mul(bool flush, float a, float b)
-{
-    return flush ? op_mul(a, b) : a * b;
-}
-
 ALWAYS_INLINE float combine(bool flush, BlendFunc func, float a, float b)
 {
-    return func == BLEND_FUNC_ADD        ? add(flush, a, b)
-           : func == BLEND_FUNC_SUBTRACT ? sub(flush, a, b)
-                                         : sub(flush, b, a);
-}
-
-ALWAYS_INLINE float factor_of(bool flush, const Part *part, BlendFactor factor, float s, float d,
-                              float source_alpha, float destination_alpha)
-{
-    float room;
-    switch (factor) {
-    case FACTOR_ZERO:
-        return 0.0f;
-    case FACTOR_SRC_COLOR:
-        return s;
-    case FACTOR_ONE_MINUS_SRC_COLOR:
-        return sub(flush, 1.0f, s);
-    case FACTOR_DST_COLOR:
-        return d;
-    case FACTOR_ONE_MINUS_DST_COLOR:
-        return sub(flush, 1.0f, d);
-    case FACTOR_SRC_ALPHA:
-        return source_alpha;
-    case FACTOR_ONE_MINUS_SRC_ALPHA:
-        return sub(flush, 1.0f, source_alpha);
-    case FACTOR_DST_ALPHA:
-        return destination_alpha;
-    case FACTOR_ONE_MINUS_DST_ALPHA:
-        return sub(flush, 1.0f, destination_alpha);
-    case FACTOR_SRC_ALPHA_SATURATE:
-        if (part->alpha)
-            return 1.0f;
-        room = sub(flush, 1.0f, destination_alpha);
-        return source_alpha < room ? source_alpha : room;
-    default:
-        return 1.0f;
-    }
+    return func == BLEND_FUNC_ADD        ? blend_float_add(flush, a, b)
+           : func == BLEND_FUNC_SUBTRACT ? blend_float_sub(flush, a, b)
+                                         : blend_float_sub(flush, b, a);
 }
 
 /* x and 1 − x, or 1 and 0. */
@@ -132,10 +87,10 @@ ALWAYS_INLINE bool is_complement(BlendFactor factor)
 /* from + x·(to − from). */
 ALWAYS_INLINE float lerp(bool flush, bool fused, float x, float from, float to)
 {
-    float delta = sub(flush, to, from);
+    float delta = blend_float_sub(flush, to, from);
     if (fused)
         return flush ? op_fma(x, delta, from) : __builtin_fmaf(x, delta, from);
-    return add(flush, mul(flush, x, delta), from);
+    return blend_float_add(flush, blend_float_mul(flush, x, delta), from);
 }
 
 /* Complementary factors, of formats with one channel only: s·x ± d·(1 − x) as a linear
@@ -147,10 +102,10 @@ ALWAYS_INLINE float complement_sum(bool flush, bool fused, const Part *part, flo
     float x = swapped ? g : f;
     if (part->func == BLEND_FUNC_ADD)
         return swapped ? lerp(flush, fused, x, s, d) : lerp(flush, fused, x, d, s);
-    float sum = mul(flush, add(flush, s, d), x);
+    float sum = blend_float_mul(flush, blend_float_add(flush, s, d), x);
     if (part->func == BLEND_FUNC_SUBTRACT)
-        return swapped ? sub(flush, s, sum) : sub(flush, sum, d);
-    return swapped ? sub(flush, sum, s) : sub(flush, d, sum);
+        return swapped ? blend_float_sub(flush, s, sum) : blend_float_sub(flush, sum, d);
+    return swapped ? blend_float_sub(flush, sum, s) : blend_float_sub(flush, d, sum);
 }
 
 ALWAYS_INLINE float float_channel(bool flush, bool fused, const Part *part, float s, float d,
@@ -160,16 +115,24 @@ ALWAYS_INLINE float float_channel(bool flush, bool fused, const Part *part, floa
         return s < d ? s : d;
     if (part->func == BLEND_FUNC_MAX)
         return s > d ? s : d;
-    float f = factor_of(flush, part, part->source, s, d, source_alpha, destination_alpha);
-    float g = factor_of(flush, part, part->destination, s, d, source_alpha, destination_alpha);
+    float f =
+        blend_float_factor(flush, part->alpha, part->source, s, d, source_alpha, destination_alpha);
+    float g = blend_float_factor(flush, part->alpha, part->destination, s, d, source_alpha,
+                                 destination_alpha);
     if (part->linked && complementary(part->source, part->destination))
         return complement_sum(flush, fused, part, s, d, f, g);
     if (part->linked && part->source == part->destination) { /* (s ± d)·f */
         float sum = combine(flush, part->func, s, d);
-        return part->source_none ? 0.0f : part->source_one ? op_kept(sum) : mul(flush, sum, f);
+        return part->source_none  ? 0.0f
+               : part->source_one ? op_kept(sum)
+                                  : blend_float_mul(flush, sum, f);
     }
-    float p = part->source_none ? 0.0f : part->source_one ? op_kept(s) : mul(flush, s, f);
-    float q = part->destination_none ? 0.0f : part->destination_one ? op_kept(d) : mul(flush, d, g);
+    float p = part->source_none  ? 0.0f
+              : part->source_one ? op_kept(s)
+                                 : blend_float_mul(flush, s, f);
+    float q = part->destination_none  ? 0.0f
+              : part->destination_one ? op_kept(d)
+                                      : blend_float_mul(flush, d, g);
     if (part->destination_none && part->func != BLEND_FUNC_REVERSE_SUBTRACT)
         return op_kept(p);
     if (part->source_none && part->func != BLEND_FUNC_SUBTRACT)
