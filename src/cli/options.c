@@ -1,9 +1,10 @@
 #include "cli/options.h"
 
 #include "base/file.h"
+#include "base/progress.h"
 #include "gl/gl_renderer.h"
 #include "scene/generate.h"
-#include "scene/gltf.h"
+#include "scene/gltf_child.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -164,7 +165,7 @@ RenderOptions options_default(void)
 
 /* ---- the scene ---- */
 
-static Result load(const char *path, Scene *out)
+static Result load(const char *path, size_t max_memory, Scene *out)
 {
     const BuiltinScene *builtin = generate_find(path);
     if (builtin && access(path, F_OK) != 0)
@@ -174,7 +175,10 @@ static Result load(const char *path, Scene *out)
                            "%s: no such file, and no built-in scene of that name; see "
                            "'peel scenes'",
                            path);
-    return gltf_load(path, out);
+    progress_begin("loading", 0);
+    Result result = gltf_child_load(path, max_memory, out);
+    progress_end();
+    return result;
 }
 
 static Result choose_camera(const char *text, const Scene *scene, int *out)
@@ -210,7 +214,7 @@ static Result apply_names(RenderOptions *options)
 
 Result options_load_scene(RenderOptions *options, Scene *out)
 {
-    Result result = load(options->scene_path, out);
+    Result result = load(options->scene_path, options->desc.max_memory, out);
     if (result != RESULT_OK)
         return result;
     if (options->camera)

@@ -89,6 +89,12 @@ static void leave_out(const Place *place)
 
 /* ---- one change ------------------------------------------------------------------------------ */
 
+/* The integer and `step`, modulo 2^64. */
+static json_t *beside(const json_t *integer, uint64_t step)
+{
+    return json_integer((json_int_t)((uint64_t)json_integer_value(integer) + step));
+}
+
 static json_t *odd_value(const json_t *old, Random *random)
 {
     static const json_int_t integers[] = {0,    1,          2,          3,           -1,
@@ -101,9 +107,9 @@ static json_t *odd_value(const json_t *old, Random *random)
     case 0:
         return json_real(reals[random_bits(random) % (sizeof reals / sizeof *reals)]);
     case 1:
-        return json_is_integer(old) ? json_integer(json_integer_value(old) + 1) : json_null();
+        return json_is_integer(old) ? beside(old, 1) : json_null();
     case 2:
-        return json_is_integer(old) ? json_integer(json_integer_value(old) - 1) : json_true();
+        return json_is_integer(old) ? beside(old, UINT64_MAX) : json_true();
     case 3:
         return random_bits(random) % 2 ? json_array() : json_object();
     case 4:
