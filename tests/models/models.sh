@@ -123,9 +123,9 @@ nothing_left() {
 
 # one_renamed EXTENSION: the same bytes under a name of glTF. What a message quotes is left out.
 one_renamed() {
-    name="${file#"$folder/"} as .$1"
-    ln -s "$file" "$work/renamed.$1"
+    name="${model#"$folder/"} as .$1"
     file=$work/renamed.$1
+    ln -s "$model" "$file"
     run render "$file" --size 64x36 -o out.png
     [ "$code" = 4 ] || violation "exit $code, expected 4; $(head -c 200 "$work/err")"
     expect_refusal
@@ -140,15 +140,14 @@ if [ -n "$only_gltf" ]; then
     mv "$work/chosen" "$work/files"
 fi
 total=$(wc -l <"$work/files")
-while IFS= read -r file <&3; do
+while IFS= read -r model <&3; do
     count=$((count + 1))
-    [ ! -t 2 ] || printf '\r\033[K%d of %d: %s' $count "$total" "${file##*/}" >&2
+    [ ! -t 2 ] || printf '\r\033[K%d of %d: %s' $count "$total" "${model##*/}" >&2
+    file=$model
     one_file
     case $kind in .gltf | .glb) continue ;; esac
-    for extension in gltf glb; do
-        file=$folder/${name%% as .gltf}
-        one_renamed $extension
-    done
+    one_renamed gltf
+    one_renamed glb
 done 3<"$work/files"
 [ ! -t 2 ] || printf '\r\033[K' >&2
 
