@@ -192,7 +192,7 @@ static void print_progress(Campaign *campaign)
             "%llu differences%s",
             terminal ? "\r\033[K" : "", (unsigned long long)campaign->done,
             (unsigned long long)campaign->options->count, (double)campaign->done / now,
-            resident_now(), resident_at(&campaign->resident, 0.0),
+            resident_now().resident, resident_at(&campaign->resident, 0.0).resident,
             (unsigned long long)differences(campaign), terminal ? "" : "\n");
 }
 
@@ -226,7 +226,7 @@ static void print_counts(const Campaign *campaign)
 static Result write_json(const Campaign *campaign, bool fused)
 {
     Document json = {0};
-    json_t *root = json_object(), *memory = json_object(), *classes = json_object();
+    json_t *root = json_object(), *memory = json_array(), *classes = json_object();
     const TrialFigures *gl = &campaign->sums[TRIAL_GL], *truth = &campaign->sums[TRIAL_TRUTH];
     document_put(&json, root, "first_seed", document_count(campaign->options->seed));
     document_put(&json, root, "wanted", document_count(campaign->options->count));
@@ -245,12 +245,31 @@ static Result write_json(const Campaign *campaign, bool fused)
     for (int i = 0; i < CLASS_COUNT; i++)
         document_put(&json, classes, class_key((PixelClass)i), document_count(truth->classes[i]));
     document_put(&json, root, "classes", classes);
-    document_put(&json, memory, "mib_10", document_real(resident_at(&campaign->resident, 0.1)));
-    document_put(&json, memory, "mib_50", document_real(resident_at(&campaign->resident, 0.5)));
-    document_put(&json, memory, "mib_100", document_real(resident_at(&campaign->resident, 1.0)));
-    document_put(&json, memory, "allowed", document_real(resident_allowed(&campaign->resident)));
-    document_put(&json, root, "resident", memory);
+    for (int i = 0; i < 3; i++) {
+        static const double parts[] = {0.1, 0.5, 1.0};
+        ResidentSample sample = resident_at(&campaign->resident, parts[i]);
+        json_t *object = json_object();
+        document_put(&json, object, "part", document_real(parts[i]));
+        document_put(&json, object, "resident_mib", document_real(sample.resident));
+        document_put(&json, object, "heap_mib", document_real(sample.heap));
+        document_append(&json, memory, object);
+    }
+    document_put(&json, root, "flat", json_boolean(resident_is_flat(&campaign->resident)));
+    document_put(&json, root, "memory", memory);
     return document_write(&json, root, campaign->options->json);
+}
+
+static void print_memory(const Resident *resident, bool flat)
+{
+    static const double parts[] = {0.1, 0.5, 1.0};
+    printf("memory:");
+    for (int i = 0; i < 3; i++) {
+        ResidentSample sample = resident_at(resident, parts[i]);
+        printf(" %.1f MiB resident, %.2f of it allocated after %.0f %%%s", sample.resident,
+               sample.heap, 100.0 * parts[i], i < 2 ? ";" : "");
+    }
+    printf(": %s (%.0f and %.0f may be added in the second half)\n", flat ? "flat" : "not flat",
+           RESIDENT_MAX, RESIDENT_HEAP_MAX);
 }
 
 static int conclude(Campaign *campaign, bool fused)
@@ -259,10 +278,7 @@ static int conclude(Campaign *campaign, bool fused)
     bool flat = resident_is_flat(resident);
     clear_line();
     print_counts(campaign);
-    printf("memory: %.1f MiB after 10 %%, %.1f after 50 %%, %.1f after 100 %%: %s (%.1f may be "
-           "added)\n",
-           resident_at(resident, 0.1), resident_at(resident, 0.5), resident_at(resident, 1.0),
-           flat ? "flat" : "not flat", resident_allowed(resident));
+    print_memory(resident, flat);
     printf("%llu of %llu scenes%s in %.0f s, fma %s: %llu failed, %llu unexplained differences\n",
            (unsigned long long)campaign->done, (unsigned long long)campaign->options->count,
            interrupted ? " (interrupted)" : "", seconds(campaign), fused ? "on" : "off",
