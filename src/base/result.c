@@ -30,12 +30,15 @@ const char *result_text(Result result)
     return "unknown result";
 }
 
-/* The contract is one line whatever a file name or a library's text contains. */
+/* The contract is one line whatever a file name or a library's text contains, and nothing that a
+ * terminal takes for a command. */
 static void make_one_line(char *text)
 {
     for (char *c = text; *c; c++)
-        if (*c == '\n' || *c == '\r')
+        if (*c == '\n' || *c == '\r' || *c == '\t')
             *c = ' ';
+        else if ((unsigned char)*c < ' ' || *c == 0x7f)
+            *c = '?';
 }
 
 Result result_fail(Result code, const char *format, ...)

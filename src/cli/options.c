@@ -47,7 +47,8 @@ static bool is_known(const struct argp *argp, unsigned flags, const char *word)
     const char *name = word + 1 + (word[1] == '-');
     bool is_long = word[1] == '-' || ((flags & ARGP_LONG_ONLY) && word[2]);
     size_t length = strcspn(name, "=");
-    for (const struct argp_option *option = argp->options; option->name || option->doc; option++)
+    const struct argp_option *option = argp->options; /* NULL: it has none */
+    for (; option && (option->name || option->doc); option++)
         if (!is_long ? option->key == word[1]
                      : option->name && strncmp(option->name, name, length) == 0)
             return true;
@@ -59,6 +60,7 @@ static bool is_known(const struct argp *argp, unsigned flags, const char *word)
 
 static int parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *input)
 {
+    reported = false;
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0) {
             argp_help(argp, stdout, ARGP_HELP_STD_HELP & ~ARGP_HELP_EXIT_OK, argv[0]);
