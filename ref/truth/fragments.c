@@ -88,6 +88,8 @@ static Result sort_list(TileFragments *fragments, DepthFunc func)
     fragments->deepest = 0;
     for (int pixel = 0; pixel < FRAGMENTS_TILE_PIXELS; pixel++) {
         uint32_t count = first[pixel + 1] - first[pixel];
+        if (count == 0)
+            continue;
         Fragment *pixel_fragments = &fragments->sorted[first[pixel]];
         sort_pixel(&fragments->order, pixel_fragments, count, func);
         fragments->ties += count_ties(&fragments->order, pixel_fragments, count);

@@ -6,6 +6,8 @@
 
 static _Thread_local char message[1024];
 static bool warnings;
+static void (*warning_sink)(void *context, const char *line);
+static void *warning_context;
 
 const char *result_text(Result result)
 {
@@ -28,12 +30,15 @@ const char *result_text(Result result)
     return "unknown result";
 }
 
-/* The contract is one line whatever a file name or a library's text contains. */
+/* The contract is one line whatever a file name or a library's text contains, and nothing that a
+ * terminal takes for a command. */
 static void make_one_line(char *text)
 {
     for (char *c = text; *c; c++)
-        if (*c == '\n' || *c == '\r')
+        if (*c == '\n' || *c == '\r' || *c == '\t')
             *c = ' ';
+        else if ((unsigned char)*c < ' ' || *c == 0x7f)
+            *c = '?';
 }
 
 Result result_fail(Result code, const char *format, ...)
@@ -58,6 +63,12 @@ void result_warnings_enable(bool enable)
     warnings = enable;
 }
 
+void result_warnings_redirect(void (*sink)(void *context, const char *line), void *context)
+{
+    warning_sink = sink;
+    warning_context = context;
+}
+
 void result_warn(const char *format, ...)
 {
     if (!warnings)
@@ -68,5 +79,8 @@ void result_warn(const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     make_one_line(text);
-    fprintf(stderr, "peel: warning: %s\n", text);
+    if (warning_sink)
+        warning_sink(warning_context, text);
+    else
+        fprintf(stderr, "peel: warning: %s\n", text);
 }

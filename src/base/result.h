@@ -29,5 +29,7 @@ const char *result_message(void);
  * nothing. */
 void result_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void result_warnings_enable(bool enable);
+/* Enabled warnings go to sink, a line each, instead; NULL: to stderr again. */
+void result_warnings_redirect(void (*sink)(void *context, const char *line), void *context);
 
 #endif

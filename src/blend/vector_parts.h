@@ -15,6 +15,7 @@ enum {
     VECTOR_ROW_MAX = 1024, /* bytes of one vector as text */
     VECTOR_LINE_MAX = 1 << 22,
     VECTOR_NAME = 16,
+    VECTOR_NOTE = sizeof((VectorHeader *)0)->arithmetic,
     VECTOR_BINARY_HEAD = 296,
     VECTOR_BINARY_END = 48,
     VECTOR_LAST_ONLY = 1 /* flag: of each sequence there is only the last pixel */
@@ -111,6 +112,10 @@ enum {
     VECTOR_QUOTE = 48
 };
 const char *vector_read_quote(const char *text, char out[VECTOR_QUOTE]);
+
+/* The note of the header: as much of text as there is room for, in characters that every form can
+ * hold. */
+void vector_read_note(const char *text, char out[VECTOR_NOTE]);
 
 /* Fills the buffer where it is empty; IO. *any: whether there is a byte. */
 Result vector_read_more(VectorReader *reader, bool *any);

@@ -38,6 +38,18 @@ const char *vector_read_quote(const char *text, char out[VECTOR_QUOTE])
     return out;
 }
 
+void vector_read_note(const char *text, char out[VECTOR_NOTE])
+{
+    size_t length = 0;
+    for (text += strspn(text, " \t"); *text && length < VECTOR_NOTE - 1; text++) {
+        bool plain = *text >= ' ' && *text <= '~' && *text != '"' && *text != '\\';
+        out[length++] = plain ? *text : '?';
+    }
+    while (length && out[length - 1] == ' ')
+        length--;
+    out[length] = 0;
+}
+
 /* ---- the stream ------------------------------------------------------------------------------ */
 
 Result vector_read_more(VectorReader *reader, bool *any)

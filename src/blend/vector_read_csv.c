@@ -61,7 +61,7 @@ static Result take_value(const VectorReader *reader, Key key, const char *value,
     case KEY_COUNT:
         return take_count(reader, "count", value, &header->count);
     default:
-        snprintf(header->arithmetic, sizeof header->arithmetic, "%s", value);
+        vector_read_note(value, header->arithmetic);
         return RESULT_OK;
     }
 }

@@ -64,7 +64,7 @@ static Result take_head(const VectorReader *reader, const json_t *object, Vector
     if (result == RESULT_OK)
         result = take_count(reader, object, "count", &header->count);
     if (arithmetic)
-        snprintf(header->arithmetic, sizeof header->arithmetic, "%s", arithmetic);
+        vector_read_note(arithmetic, header->arithmetic);
     return result;
 }
 

@@ -1,9 +1,10 @@
 #include "cli/options.h"
 
 #include "base/file.h"
+#include "base/progress.h"
 #include "gl/gl_renderer.h"
 #include "scene/generate.h"
-#include "scene/gltf.h"
+#include "scene/gltf_child.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -46,7 +47,8 @@ static bool is_known(const struct argp *argp, unsigned flags, const char *word)
     const char *name = word + 1 + (word[1] == '-');
     bool is_long = word[1] == '-' || ((flags & ARGP_LONG_ONLY) && word[2]);
     size_t length = strcspn(name, "=");
-    for (const struct argp_option *option = argp->options; option->name || option->doc; option++)
+    const struct argp_option *option = argp->options; /* NULL: it has none */
+    for (; option && (option->name || option->doc); option++)
         if (!is_long ? option->key == word[1]
                      : option->name && strncmp(option->name, name, length) == 0)
             return true;
@@ -58,6 +60,7 @@ static bool is_known(const struct argp *argp, unsigned flags, const char *word)
 
 static int parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *input)
 {
+    reported = false;
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0) {
             argp_help(argp, stdout, ARGP_HELP_STD_HELP & ~ARGP_HELP_EXIT_OK, argv[0]);
@@ -164,7 +167,7 @@ RenderOptions options_default(void)
 
 /* ---- the scene ---- */
 
-static Result load(const char *path, Scene *out)
+static Result load(const char *path, size_t max_memory, Scene *out)
 {
     const BuiltinScene *builtin = generate_find(path);
     if (builtin && access(path, F_OK) != 0)
@@ -174,7 +177,10 @@ static Result load(const char *path, Scene *out)
                            "%s: no such file, and no built-in scene of that name; see "
                            "'peel scenes'",
                            path);
-    return gltf_load(path, out);
+    progress_begin("loading", 0);
+    Result result = gltf_child_load(path, max_memory, out);
+    progress_end();
+    return result;
 }
 
 static Result choose_camera(const char *text, const Scene *scene, int *out)
@@ -210,7 +216,7 @@ static Result apply_names(RenderOptions *options)
 
 Result options_load_scene(RenderOptions *options, Scene *out)
 {
-    Result result = load(options->scene_path, out);
+    Result result = load(options->scene_path, options->desc.max_memory, out);
     if (result != RESULT_OK)
         return result;
     if (options->camera)

@@ -143,6 +143,8 @@ static Result assimp_failure(const char *path)
     char message[512] = "";
     strncat(message, aiGetErrorString(), sizeof message - 1);
     message[strcspn(message, "\r\n")] = 0;
+    if (strstr(message, "std::bad_alloc"))
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory for Assimp", path);
     return result_fail(RESULT_BAD_INPUT, "%s: cannot import: %s", path,
                        *message ? message : "no reason given");
 }

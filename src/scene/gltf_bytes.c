@@ -95,6 +95,32 @@ Result gltf_bytes_image(GltfBytes *bytes, size_t image, GltfSpan *out)
                : read_view(bytes, gltf_json_index(from, "bufferView", 0), out);
 }
 
+static uint64_t file_bytes(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode) ? (uint64_t)info.st_size : 0;
+}
+
+uint64_t gltf_bytes_all(const GltfBytes *bytes)
+{
+    static const char *const arrays[] = {"buffers", "images"};
+    uint64_t all = file_bytes(bytes->path);
+    for (int k = 0; k < 2; k++) {
+        const json_t *element;
+        size_t i;
+        json_array_foreach(json_object_get(bytes->json->root, arrays[k]), i, element)
+        {
+            const char *uri = json_string_value(json_object_get(element, "uri"));
+            char *path = NULL;
+            if (uri && strncmp(uri, "data:", 5) != 0 &&
+                gltf_file_beside(bytes->path, uri, &path) == RESULT_OK)
+                all += file_bytes(path);
+            free(path);
+        }
+    }
+    return all;
+}
+
 static float float_at(const unsigned char *at)
 {
     uint32_t bits = at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;

@@ -366,16 +366,19 @@ static Result name_file(const char *path, Result result)
     return result;
 }
 
-Result gltf_load(const char *path, Scene *out)
+Result gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *out)
 {
     *out = (Scene){0};
     GltfJson json;
     Result result = gltf_read(path, &json);
     if (result)
-        return result;
+        return name_file(path, result);
     Loader loader = {.path = path, .json = &json, .bytes = {.path = path, .json = &json}};
     loader.textures.bytes = &loader.bytes;
-    result = gltf_assimp_import(path, &json, &loader.assimp);
+    if (sized)
+        result = sized(context, gltf_bytes_all(&loader.bytes));
+    if (!result)
+        result = gltf_assimp_import(path, &json, &loader.assimp);
     if (!result)
         result = convert(&loader, out);
     if (!result)
@@ -391,4 +394,9 @@ Result gltf_load(const char *path, Scene *out)
     gltf_bytes_free(&loader.bytes);
     gltf_json_free(&json);
     return name_file(path, result);
+}
+
+Result gltf_load(const char *path, Scene *out)
+{
+    return gltf_load_sized(path, NULL, NULL, out);
 }

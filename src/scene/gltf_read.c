@@ -70,6 +70,8 @@ static Result parse(const char *path, GltfJson *json)
         return result;
     json_error_t error;
     json->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
+    if (!json->root && json_error_code(&error) == json_error_out_of_memory)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory for its JSON text", path);
     if (!json->root)
         return result_fail(RESULT_BAD_INPUT, "%s: not glTF: line %d, column %d: %s", path,
                            error.line, error.column, error.text);

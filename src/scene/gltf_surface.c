@@ -131,9 +131,34 @@ static Result check_info(const GltfCheck *check, size_t material, const char *ke
     return RESULT_OK;
 }
 
+/* Of what is modelled: a member of another type would count as absent. */
+static Result check_types(const GltfCheck *check, size_t index, const json_t *material)
+{
+    const json_t *factors = json_object_get(material, "pbrMetallicRoughness");
+    const json_t *mode = json_object_get(material, "alphaMode");
+    const json_t *sided = json_object_get(material, "doubleSided");
+    const json_t *numbers[] = {json_object_get(material, "alphaCutoff"),
+                               json_object_get(factors, "metallicFactor"),
+                               json_object_get(factors, "roughnessFactor")};
+    if (factors && !json_is_object(factors))
+        return gltf_fail(check, "material", index, "an object as its pbrMetallicRoughness");
+    if (mode && !json_is_string(mode))
+        return gltf_fail(check, "material", index, "a string as its alphaMode");
+    if (sided && !json_is_boolean(sided))
+        return gltf_fail(check, "material", index, "true or false as its doubleSided");
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (numbers[i] && !json_is_number(numbers[i]))
+            return gltf_fail(check, "material", index,
+                             "numbers as its metallicFactor, roughnessFactor and alphaCutoff");
+    return RESULT_OK;
+}
+
 static Result check_material(const GltfCheck *check, size_t index, const json_t *material)
 {
     const json_t *factors = json_object_get(material, "pbrMetallicRoughness");
+    Result result = check_types(check, index, material);
+    if (result)
+        return result;
     if (!gltf_valid_numbers(json_object_get(factors, "baseColorFactor"), 4))
         return gltf_fail(check, "material", index, "four numbers as its baseColorFactor");
     if (json_object_get(material, "normalTexture") ||
@@ -142,7 +167,7 @@ static Result check_material(const GltfCheck *check, size_t index, const json_t 
         gltf_note(check, NOTE_TEXTURES);
     if (positive(json_object_get(material, "emissiveFactor")))
         gltf_note(check, NOTE_EMISSIVE);
-    Result result = check_info(check, index, BASE_COLOR);
+    result = check_info(check, index, BASE_COLOR);
     return result ? result : check_info(check, index, METALLIC_ROUGHNESS);
 }
 

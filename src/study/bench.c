@@ -85,7 +85,6 @@ typedef struct Group {
     Image truths[BENCH_AXIS_MAX]; /* final, per format; one that an earlier format has is empty */
     int truth_of[BENCH_AXIS_MAX]; /* which of truths a format has */
     size_t first, total;          /* rows before, and of the plan, for progress */
-    const ChildWork *work;
     int pipe;
 } Group;
 
@@ -203,7 +202,7 @@ static Result put_rows(Cell *cell)
             continue;
         row->cpu_ms = bench_median(cell->cpu_ms[i], plan->runs, &row->spread);
         row->wall_ms = bench_median(cell->wall_ms[i], plan->runs, &row->wall_spread);
-        result = child_put(cell->group->pipe, cell->group->work, row);
+        result = child_put(cell->group->pipe, row, sizeof *row);
     }
     return result;
 }
@@ -298,8 +297,9 @@ size_t bench_row_count(const BenchPlan *plan)
            (size_t)plan->thread_count * rows_per_group(plan);
 }
 
-static void take_row(void *context, const void *record)
+static void take_row(void *context, const void *record, size_t size)
 {
+    (void)size;
     BenchReport *report = context;
     const BenchRow *row = record;
     report->rows[report->count++] = *row;
@@ -339,14 +339,10 @@ static Result run_threads(Group *group, BenchGroup take, void *context, BenchRep
     Result result = RESULT_OK;
     for (int t = 0; t < plan->thread_count && result == RESULT_OK; t++) {
         size_t first = out->count;
-        const ChildWork work = {.run = run_group,
-                                .context = group,
-                                .record_size = sizeof(BenchRow),
-                                .take = take_row,
-                                .take_context = out};
+        const ChildWork work = {
+            .run = run_group, .context = group, .take = take_row, .take_context = out};
         group->threads = plan->threads[t];
         group->first = first;
-        group->work = &work;
         result = child_run(&work);
         if (result == RESULT_OK)
             result = bench_mark_pareto(out->rows + first, out->count - first);

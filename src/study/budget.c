@@ -146,8 +146,7 @@ static Result render(const Study *study, Renderer renderer, const RenderDesc *de
     return RESULT_OK;
 }
 
-/* desc with 32-bit formats, no limit and no bias. */
-static RenderDesc best_of(const RenderDesc *desc, MethodId method)
+RenderDesc budget_best(const RenderDesc *desc, MethodId method)
 {
     RenderDesc best = *desc;
     best.method = method;
@@ -247,8 +246,8 @@ static Result change_formats(Study *study, const RenderDesc *best, const Image *
 static Result explain(Study *study)
 {
     const RenderDesc *desc = study->desc;
-    RenderDesc best = best_of(desc, METHOD_PEEL_ID), tied = best_of(desc, METHOD_PEEL);
-    RenderDesc method = best_of(desc, desc->method);
+    RenderDesc best = budget_best(desc, METHOD_PEEL_ID), tied = budget_best(desc, METHOD_PEEL);
+    RenderDesc method = budget_best(desc, desc->method);
     StructureCounts counts;
     Image image = {0};
     method.nodes_per_pixel = desc->nodes_per_pixel;

@@ -42,6 +42,9 @@ typedef struct Budget {
     uint8_t *classes; /* width · height, row 0 at the top: a PixelClass each */
 } Budget;
 
+/* desc with 32-bit formats, no limit and no bias, by another method. */
+RenderDesc budget_best(const RenderDesc *desc, MethodId method);
+
 /* Renders up to ten times. The caller frees with budget_free; on failure there is nothing to
  * free. */
 Result budget_run(const Scene *scene, const RenderDesc *desc, Renderer ref, Renderer truth,

@@ -34,24 +34,32 @@ const char *class_text(PixelClass class)
     return classes[class].text;
 }
 
-static bool has(const StructurePixel *side, uint32_t id)
+/* -1: it has not. */
+static int find(const StructurePixel *side, uint32_t id)
 {
     for (int i = 0; i < side->count; i++)
         if (side->ids[i] == id)
-            return true;
-    return false;
+            return i;
+    return -1;
+}
+
+static bool has(const StructurePixel *side, uint32_t id)
+{
+    return find(side, id) >= 0;
 }
 
 /* Why `actual` has not truth's fragment number `index`; best: what single precision can have. */
 static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int index,
                        const StructurePixel *actual, const StructurePixel *best)
 {
-    if (!has(best, truth->ids[index]))
+    int at = find(best, truth->ids[index]);
+    if (at < 0)
         return CLASS_COVERAGE;
-    /* What is behind the last pass has nothing behind it, or lies between both ends. */
+    /* What is behind the last pass has nothing behind it, in the order that single precision sees,
+     * or lies between both ends. */
     bool ends = desc->method == METHOD_DUAL || desc->method == METHOD_FORWARD_DUAL, last = true;
-    for (int i = index + 1; i < truth->count; i++)
-        last = last && !has(actual, truth->ids[i]);
+    for (int i = at + 1; i < best->count; i++)
+        last = last && !has(actual, best->ids[i]);
     if (desc->passes && (last || ends))
         return CLASS_LOST_LIMIT;
     if (desc->method == METHOD_LINKED_LIST)

@@ -21,12 +21,13 @@ static bool is_layered(const char *name)
     return strncmp(name, "opaque.", 7) != 0;
 }
 
-static void add_buffers(const Against *against, const RenderDesc *desc, Bits *out)
+static Result add_buffers(const Against *against, const RenderDesc *desc, Bits *out)
 {
     out->buffers = against->count;
     for (size_t i = 0; i < against->count; i++) {
         const BufferMetrics *buffer = &against->buffers[i];
-        ck_assert_uint_gt(buffer->values, 0);
+        if (buffer->values == 0)
+            return result_fail(RESULT_INTERNAL, "%s: nothing was compared", buffer->name);
         if (out->layers.lost_to_overflow > 0 && is_layered(buffer->name))
             continue;
         out->pixels += (uint64_t)desc->width * (uint64_t)desc->height;
@@ -40,6 +41,7 @@ static void add_buffers(const Against *against, const RenderDesc *desc, Bits *ou
                      (unsigned long long)buffer->values, buffer->first[0], buffer->first[1],
                      buffer->first[2], buffer->max_ulp, buffer->max_abs, buffer->max_abs);
     }
+    return RESULT_OK;
 }
 
 /* What is known of lists whatever nodes are lost, and then of their layers too; of other methods gl
@@ -87,13 +89,15 @@ static void add_frames(const Frame *ref, const Frame *driver, Bits *out)
 }
 
 /* Every fragment is peeled, or counted as lost. */
-static void check_counts(const LayerStats *layers)
+static Result check_counts(const LayerStats *layers)
 {
-    ck_assert_msg(layers->lost_to_overflow > 0 || (layers->lost_to_ties <= layers->fragments &&
-                                                   layers->lost_to_pass_limit <= layers->fragments),
-                  "of %llu fragments %llu lost to ties, %llu to the pass limit",
-                  (unsigned long long)layers->fragments, (unsigned long long)layers->lost_to_ties,
-                  (unsigned long long)layers->lost_to_pass_limit);
+    if (layers->lost_to_overflow > 0 || (layers->lost_to_ties <= layers->fragments &&
+                                         layers->lost_to_pass_limit <= layers->fragments))
+        return RESULT_OK;
+    return result_fail(
+        RESULT_INTERNAL, "of %llu fragments %llu lost to ties, %llu to the pass limit",
+        (unsigned long long)layers->fragments, (unsigned long long)layers->lost_to_ties,
+        (unsigned long long)layers->lost_to_pass_limit);
 }
 
 /* Depth and the stored colours of the opaque pass, the last accumulation and the display; and what
@@ -132,34 +136,59 @@ static size_t expected_buffers(const RenderDesc *desc, int peels)
     return stored + others + peel * (size_t)peels + 2;
 }
 
-void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)
+/* driver: what gl traced; *frame: what it returned. */
+static Result compare_with(const Scene *scene, const RenderDesc *desc, const TraceStore *driver,
+                           const Frame *frame, Bits *out)
 {
-    TraceStore *driver;
     Against against;
-    Frame ref, frame;
+    Frame ref = {0};
     RenderDesc modelled = *desc;
-    *out = (Bits){0};
     modelled.ref_path = REF_PATH_DEFINITION;
-    ok(store_create(0, &driver));
-    ok(gl_render(scene, desc, store_sink(driver), &frame));
-    modelled.unfused = !frame.fused;
-    ok(against_create(driver, &against));
-    ok(pipeline_render(scene, &modelled, &against.sink, &ref));
-    ok(against_finish(&against));
-    out->fused = frame.fused;
+    modelled.unfused = !frame->fused;
+    Result result = against_create(driver, &against);
+    if (result == RESULT_OK)
+        result = pipeline_render(scene, &modelled, &against.sink, &ref);
+    if (result == RESULT_OK)
+        result = against_finish(&against);
+    out->fused = frame->fused;
     out->peels = ref.peels;
     out->geometry_passes[0] = ref.geometry_passes;
-    out->geometry_passes[1] = frame.geometry_passes;
+    out->geometry_passes[1] = frame->geometry_passes;
     out->layers = ref.layers;
-    check_counts(&ref.layers);
-    add_buffers(&against, desc, out);
-    add_frames(&ref, &frame, out);
-    ck_assert_uint_eq(against.count,
-                      expected_buffers(desc, ref.peels > frame.peels ? ref.peels : frame.peels));
+    if (result == RESULT_OK)
+        result = check_counts(&ref.layers);
+    if (result == RESULT_OK)
+        result = add_buffers(&against, desc, out);
+    if (result == RESULT_OK)
+        add_frames(&ref, frame, out);
+    size_t expected = expected_buffers(desc, ref.peels > frame->peels ? ref.peels : frame->peels);
+    if (result == RESULT_OK && against.count != expected)
+        result = result_fail(RESULT_INTERNAL, "%zu buffers in the traces, expected %zu",
+                             against.count, expected);
     frame_free(&ref);
-    frame_free(&frame);
     against_free(&against);
+    return result;
+}
+
+Result bits_measure(const Scene *scene, const RenderDesc *desc, Bits *out)
+{
+    TraceStore *driver = NULL;
+    Frame frame;
+    *out = (Bits){0};
+    Result result = store_create(0, &driver);
+    if (result == RESULT_OK)
+        result = gl_render(scene, desc, store_sink(driver), &frame);
+    if (result == RESULT_OK) {
+        result = compare_with(scene, desc, driver, &frame, out);
+        frame_free(&frame);
+    }
     store_destroy(driver);
+    return result;
+}
+
+void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out)
+{
+    ok(bits_measure(scene, desc, out));
 }
 
 uint64_t bits_between(Renderer renderer, const Scene *scene, const RenderDesc *a,

@@ -17,10 +17,12 @@ typedef struct Bits {
     char difference[512];    /* the first one, "" if there is none */
 } Bits;
 
-/* Renders with both and compares. The test fails where one of them does. Where lists overflow,
- * which nodes are lost depends on threads: then the opaque buffers and the counts of nodes are
- * compared.
- */
+/* Renders with both and compares. Where lists overflow, which nodes are lost depends on threads:
+ * then the opaque buffers and the counts of nodes are compared. Fails where a renderer does, and
+ * with INTERNAL where a trace lacks buffers or counts contradict each other. */
+Result bits_measure(const Scene *scene, const RenderDesc *desc, Bits *out);
+
+/* The same; what fails fails the test. */
 void bits_compare(const Scene *scene, const RenderDesc *desc, Bits *out);
 
 /* Renders twice with one renderer: the values that differ in all buffers of the trace, and 1 for

@@ -31,11 +31,9 @@ static inline void methods_make_soup(uint64_t seed, MethodId method, RenderDesc 
 static inline void methods_check_soup(uint64_t seed, MethodId method, Bits *out)
 {
     static Soup soup;
-    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
-    Random random = random_seed(seed);
-    RenderDesc desc = random_desc(&random, kind);
+    RenderDesc desc;
+    SoupKind kind = random_case(seed, &desc, &soup);
     desc.method = method;
-    soup_make_kind(&random, kind, desc.width, desc.height, &soup);
     methods_ok(scene_validate(&soup.scene));
     bits_compare(&soup.scene, &desc, out);
     ck_assert_msg(out->differing == 0, "seed %llu, %s: %s", (unsigned long long)seed,

@@ -2,10 +2,12 @@
 
 #include "base/memory.h"
 #include "frame/method.h"
+#include "scene/gltf.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* A triangle with vertices of its own, so that any set of them makes a scene. */
 typedef struct Triangle {
@@ -281,4 +283,41 @@ void minimise_options(const RenderDesc *desc, char *text, size_t size)
     if (desc->lights != 0 && length > 0 && (size_t)length < size)
         snprintf(text + length, size - (size_t)length, " --lights %d",
                  desc->lights > 0 ? desc->lights : 0);
+}
+
+/* ---- a file of it --------------------------------------------------------------------------- */
+
+/* Whether the file, read again, still shows the failure. */
+static Result shows(const char *path, const RenderDesc *desc, MinimiseFails fails, bool *out)
+{
+    Scene scene;
+    Result result = gltf_load(path, &scene);
+    if (result != RESULT_OK)
+        return result;
+    *out = fails(&scene, desc);
+    scene_free(&scene);
+    return RESULT_OK;
+}
+
+Result minimise_to_file(const Scene *scene, const RenderDesc *desc, MinimiseFails fails,
+                        const char *path, MinimisedFile *out)
+{
+    char folder[1024] = "", options[640] = "";
+    Minimal minimal;
+    *out = (MinimisedFile){0};
+    Result result = minimise(scene, desc, fails, &minimal);
+    if (result != RESULT_OK)
+        return result;
+    out->triangles = minimal.triangles;
+    out->lights = minimal.scene.light_count;
+    result = gltf_write(&minimal.scene, path);
+    minimise_options(&minimal.desc, options, sizeof options);
+    if (!getcwd(folder, sizeof folder))
+        *folder = '\0';
+    snprintf(out->command, sizeof out->command, "build/peel compare %s/%s %s%s", folder, path,
+             options, minimal.desc.bound ? " --bound" : "");
+    if (result == RESULT_OK)
+        result = shows(path, &minimal.desc, fails, &out->shown);
+    minimise_free(&minimal);
+    return result;
 }

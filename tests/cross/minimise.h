@@ -23,6 +23,18 @@ typedef struct Minimal {
 Result minimise(const Scene *scene, const RenderDesc *desc, MinimiseFails fails, Minimal *out);
 void minimise_free(Minimal *minimal);
 
+typedef struct MinimisedFile {
+    uint32_t triangles;
+    size_t lights;
+    bool shown;         /* the file, read again, still fails */
+    char command[1800]; /* that shows it, from the source folder */
+} MinimisedFile;
+
+/* The same as a glTF file at path, relative to the working directory. Fails as writing and reading
+ * it do. */
+Result minimise_to_file(const Scene *scene, const RenderDesc *desc, MinimiseFails fails,
+                        const char *path, MinimisedFile *out);
+
 /* The options of `peel` that ask for desc; one that has none of its own comes with the profile. */
 void minimise_options(const RenderDesc *desc, char *text, size_t size);
 

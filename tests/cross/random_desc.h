@@ -79,4 +79,14 @@ static inline RenderDesc random_desc(Random *random, SoupKind kind)
     return desc;
 }
 
+/* Random scene number `seed`: its kind, and settings and a window that suit it. */
+static inline SoupKind random_case(uint64_t seed, RenderDesc *desc, Soup *soup)
+{
+    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
+    Random random = random_seed(seed);
+    *desc = random_desc(&random, kind);
+    soup_make_kind(&random, kind, desc->width, desc->height, soup);
+    return kind;
+}
+
 #endif

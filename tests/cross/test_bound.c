@@ -6,12 +6,9 @@
  * or from 1. */
 #include "soup_kinds.h"
 #include "testing.h"
+#include "truths.h"
 
-#include "compare/metrics.h"
-#include "compare/store.h"
-#include "compare/structure.h"
 #include "frame/method.h"
-#include "ref/pipeline/pipeline.h"
 #include "ref/truth/truth.h"
 #include "scene/generate.h"
 
@@ -24,32 +21,17 @@ static void ok(Result result)
 
 /* ---- one comparison -------------------------------------------------------------------------- */
 
-static Frame render(Renderer renderer, const Scene *scene, const RenderDesc *desc,
-                    TraceStore **store)
-{
-    Frame frame;
-    ok(store_create(0, store));
-    ok(renderer(scene, desc, store_sink(*store), &frame));
-    return frame;
-}
-
 /* Fails where a pixel exceeds its bound. */
-static BoundMetrics compare(const Scene *scene, const RenderDesc *asked, const char *name)
+static BoundMetrics compare(const Scene *scene, const RenderDesc *desc, const char *name)
 {
-    TraceStore *stores[2];
-    RenderDesc desc = *asked;
-    Frame ref = render(pipeline_render, scene, &desc, &stores[0]);
-    desc.bound = true;
-    Frame truth = render(truth_render, scene, &desc, &stores[1]);
-    uint8_t *same = calloc((size_t)desc.width, (size_t)desc.height);
-    StructureCounts counts;
-    BoundMetrics bound;
-    ok(structure_compare(stores[0], stores[1], desc.width, desc.height, same, &counts));
-    ok(metrics_bound(&ref.final, &truth, same, &bound));
+    Truths truths;
+    ok(truths_compare(scene, desc, &truths));
+    BoundMetrics bound = truths.bound;
     if (bound.exceeded) {
         int x = bound.first[0], y = bound.first[1];
-        const float *a = image_pixel(&ref.final, x, y), *b = image_pixel(&truth.final, x, y);
-        const float *most = image_pixel(&truth.bound, x, y);
+        const float *a = image_pixel(&truths.ref.final, x, y);
+        const float *b = image_pixel(&truths.truth.final, x, y);
+        const float *most = image_pixel(&truths.truth.bound, x, y);
         for (int c = 0; c < 4; c++)
             printf("%s: %d, %d: ref %.9g truth %.9g differ by %.3g, bound %.3g\n", name, x, y,
                    (double)a[c], (double)b[c], (double)fabsf(a[c] - b[c]), (double)most[c]);
@@ -57,11 +39,7 @@ static BoundMetrics compare(const Scene *scene, const RenderDesc *asked, const c
     ck_assert_msg(bound.exceeded == 0, "%s: %llu of %llu pixels exceed the bound, by %g at most",
                   name, (unsigned long long)bound.exceeded, (unsigned long long)bound.pixels,
                   bound.max_ratio);
-    free(same);
-    for (int i = 0; i < 2; i++)
-        store_destroy(stores[i]);
-    frame_free(&ref);
-    frame_free(&truth);
+    truths_free(&truths);
     return bound;
 }
 

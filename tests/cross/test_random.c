@@ -11,10 +11,8 @@
 
 #include "frame/method.h"
 #include "gl/gl_renderer.h"
-#include "scene/gltf.h"
 
 #include <stdio.h>
-#include <unistd.h>
 
 typedef struct Totals {
     uint64_t scenes, pixels, fragments, values, mismatches;
@@ -59,42 +57,24 @@ static bool differs(const Scene *scene, const RenderDesc *desc)
 
 /* ---- a failure ------------------------------------------------------------------------------ */
 
-/* Whether the file, read again, still shows the failure. */
-static bool shows(const char *path, const RenderDesc *desc)
-{
-    Scene scene;
-    ok(gltf_load(path, &scene));
-    bool shown = differs(&scene, desc);
-    scene_free(&scene);
-    return shown;
-}
-
 static void report(uint64_t seed, SoupKind kind, const Scene *scene, const RenderDesc *desc)
 {
-    char path[64], folder[1024] = "", options[640];
+    char path[64];
     bool fused;
-    Minimal minimal;
+    MinimisedFile file;
     printf("random: seed %llu, %s: %s\nrandom: PEEL_TEST_SEED=%llu runs this case; reducing it\n",
            (unsigned long long)seed, soup_kind_name(kind), difference, (unsigned long long)seed);
     fflush(stdout);
-    ok(minimise(scene, desc, differs, &minimal));
-    ok(gl_driver_fuses(0, &fused));
     snprintf(path, sizeof path, "random-%llu.gltf", (unsigned long long)seed);
-    ok(gltf_write(&minimal.scene, path));
-    minimal.desc.unfused = !fused;
-    minimise_options(&minimal.desc, options, sizeof options);
-    bool shown = shows(path, &minimal.desc);
-    if (!getcwd(folder, sizeof folder))
-        *folder = '\0';
-    printf("random: %u triangles, %zu lights left: %s\n"
-           "random: build/peel compare %s/%s %s\n",
-           minimal.triangles, minimal.scene.light_count,
-           shown ? difference : "the file does not show it", folder, path, options);
+    ok(gl_driver_fuses(0, &fused));
+    RenderDesc modelled = *desc;
+    modelled.unfused = !fused;
+    ok(minimise_to_file(scene, &modelled, differs, path, &file));
+    printf("random: %u triangles, %zu lights left: %s\nrandom: %s\n", file.triangles, file.lights,
+           file.shown ? difference : "the file does not show it", file.command);
     fflush(stdout);
-    uint32_t triangles = minimal.triangles;
-    minimise_free(&minimal);
     ck_abort_msg("PEEL_TEST_SEED=%llu (%s): %s; %s has %u triangles", (unsigned long long)seed,
-                 soup_kind_name(kind), difference, path, triangles);
+                 soup_kind_name(kind), difference, path, file.triangles);
 }
 
 /* ---- all scenes ----------------------------------------------------------------------------- */
@@ -115,11 +95,9 @@ static void add(Totals *sum, const Totals *totals)
 static void run_case(uint64_t seed)
 {
     static Soup soup;
-    SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
-    Random random = random_seed(seed);
-    RenderDesc desc = random_desc(&random, kind);
+    RenderDesc desc;
     Totals totals;
-    soup_make_kind(&random, kind, desc.width, desc.height, &soup);
+    SoupKind kind = random_case(seed, &desc, &soup);
     ok(scene_validate(&soup.scene));
     compare(&soup.scene, &desc, &totals);
     add(&kinds[kind], &totals);

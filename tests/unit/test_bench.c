@@ -1,8 +1,7 @@
 /* Statistics, the Pareto front, ratios, formats and the run of a benchmark, with renderers made up
- * here; child processes. */
+ * here. */
 #include "testing.h"
 
-#include "base/child.h"
 #include "report/bench.h"
 #include "study/bench_stats.h"
 
@@ -95,64 +94,6 @@ START_TEST(test_formats)
     ck_assert(!bench_format_parse("rgb8", &format));
     ck_assert(
         !bench_format_parse("rgba8+rgba8+rgba8+rgba8+rgba8+rgba8+rgba8+rgba8+rgba8", &format));
-}
-END_TEST
-
-/* ---- child processes ------------------------------------------------------------------------- */
-
-typedef struct Taken {
-    int count, sum;
-} Taken;
-
-static void take_number(void *context, const void *record)
-{
-    Taken *taken = context;
-    taken->count++;
-    taken->sum += *(const int *)record;
-}
-
-typedef enum Ending {
-    END_WELL,
-    END_FAILED,
-    END_KILLED,
-    END_SILENT
-} Ending;
-
-typedef struct Numbers {
-    Ending ending;
-    const ChildWork *work;
-} Numbers;
-
-static Result put_numbers(void *context, int pipe)
-{
-    const Numbers *numbers = context;
-    for (int i = 1; i <= 100; i++)
-        if (child_put(pipe, numbers->work, &i) != RESULT_OK)
-            return RESULT_IO;
-    if (numbers->ending == END_KILLED)
-        raise(SIGKILL);
-    if (numbers->ending == END_SILENT)
-        _exit(3);
-    return numbers->ending == END_FAILED ? result_fail(RESULT_NO_GL, "no more") : RESULT_OK;
-}
-
-START_TEST(test_child)
-{
-    static const Result expected[] = {RESULT_OK, RESULT_NO_GL, RESULT_INTERNAL, RESULT_INTERNAL};
-    static const char *const messages[] = {"", "no more", "signal 9", "exit code 3"};
-    Numbers numbers = {.ending = (Ending)_i};
-    Taken taken = {0};
-    const ChildWork work = {.run = put_numbers,
-                            .context = &numbers,
-                            .record_size = sizeof(int),
-                            .take = take_number,
-                            .take_context = &taken};
-    numbers.work = &work;
-    ck_assert_int_eq(child_run(&work), expected[_i]);
-    ck_assert_int_eq(taken.count, 100);
-    ck_assert_int_eq(taken.sum, 5050);
-    if (_i != END_WELL)
-        ck_assert_msg(strstr(result_message(), messages[_i]), "%s", result_message());
 }
 END_TEST
 
@@ -376,7 +317,6 @@ int main(void)
     tcase_add_test(tcase, test_pareto);
     tcase_add_test(tcase, test_ratios);
     tcase_add_test(tcase, test_formats);
-    tcase_add_loop_test(tcase, test_child, END_WELL, END_SILENT + 1);
     tcase_add_test(tcase, test_run);
     tcase_add_test(tcase, test_run_reports_other_bits);
     tcase_add_test(tcase, test_run_fails_as_its_parts_do);

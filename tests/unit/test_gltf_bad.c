@@ -252,6 +252,29 @@ START_TEST(sample_models)
 }
 END_TEST
 
+START_TEST(wrong_types)
+{
+    static const char *const members[] = {
+        "\"pbrMetallicRoughness\":[\"no object\"]",
+        "\"pbrMetallicRoughness\":{\"metallicFactor\":\"1\"}",
+        "\"pbrMetallicRoughness\":{\"roughnessFactor\":[]}",
+        "\"pbrMetallicRoughness\":{\"baseColorTexture\":0}",
+        "\"pbrMetallicRoughness\":{\"baseColorFactor\":1}",
+        "\"alphaCutoff\":\"0.5\"",
+        "\"alphaMode\":1",
+        "\"doubleSided\":1",
+    };
+    for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":"
+                 "{\"POSITION\":0},\"material\":0,\"indices\":2}]}]," ONE_NODE,
+                 members[i]);
+        refused(text, RESULT_BAD_INPUT, "material 0: expected ");
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("gltf_bad");
@@ -264,6 +287,7 @@ int main(void)
     tcase_add_test(test, malformed_escapes);
     tcase_add_test(test, broken_geometry);
     tcase_add_test(test, index_out_of_range);
+    tcase_add_test(test, wrong_types);
     tcase_add_test(test, broken_nodes);
     tcase_add_test(test, broken_ranges);
     tcase_add_test(test, too_deep_a_graph);

@@ -1,0 +1,69 @@
+/* PNG and JPEG files: what decode_image makes of any bytes. Images of more than 2^18 pixels are
+ * left out, for the time they take. */
+#include "fuzz.h"
+
+#include "image/decode.h"
+#include "image/png.h"
+
+#include <stdlib.h>
+
+enum {
+    PIXELS_MAX = 1 << 18
+};
+
+static void check_equal(const Image *a, const Image *b, const char *what)
+{
+    FUZZ_CHECK(a->width == b->width && a->height == b->height && a->format == b->format &&
+                   memcmp(a->pixels, b->pixels,
+                          (size_t)a->width * (size_t)a->height * format_pixel_bytes(a->format)) ==
+                       0,
+               "%s: an image of %dx%d pixels", what, a->width, a->height);
+}
+
+/* Written as PNG, it reads the same. */
+static void check_encoded(const Image *image)
+{
+    unsigned char *bytes;
+    size_t count;
+    Image again;
+    FUZZ_CHECK(png_encode(image, "encoded", &bytes, &count) == RESULT_OK &&
+                   decode_image(bytes, count, "encoded", &again) == RESULT_OK,
+               "a decoded image");
+    check_equal(image, &again, "encoded and decoded");
+    image_free(&again);
+    free(bytes);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    int width, height;
+    Image image, again;
+    if (decode_size(data, size, "input", &width, &height) != RESULT_OK) {
+        fuzz_check_message();
+        FUZZ_CHECK(decode_image(data, size, "input", &image) != RESULT_OK && !image.pixels,
+                   "an image without a size");
+        return 0;
+    }
+    FUZZ_CHECK(width > 0 && height > 0 && width <= DECODE_MAX_PIXELS && height <= DECODE_MAX_PIXELS,
+               "%dx%d", width, height);
+    if ((int64_t)width * height > PIXELS_MAX)
+        return 0;
+    if (decode_image(data, size, "input", &image) != RESULT_OK) {
+        fuzz_check_message();
+        FUZZ_CHECK(!image.pixels, "pixels after a failure");
+        return 0;
+    }
+    int channels = decode_channels(data, size);
+    FUZZ_CHECK(image.width == width && image.height == height, "%dx%d, the header has %dx%d",
+               image.width, image.height, width, height);
+    FUZZ_CHECK(image.format == FORMAT_RGBA8 || image.format == FORMAT_RGBA16, "format %d",
+               (int)image.format);
+    FUZZ_CHECK(channels >= 1 && channels <= 4, "%d channels", channels);
+    FUZZ_CHECK(decode_image(data, size, "input", &again) == RESULT_OK, "decoded once");
+    check_equal(&image, &again, "decoded twice");
+    if (image.format == FORMAT_RGBA8)
+        check_encoded(&image);
+    image_free(&again);
+    image_free(&image);
+    return 0;
+}

@@ -1,0 +1,68 @@
+/* Runs a command within limits and says what it took.
+ *
+ *   limited RECORD SECONDS MEBIBYTES COMMAND [ARGUMENT...]
+ *
+ * No process of it may map more than MEBIBYTES; after SECONDS on the clock it is killed. RECORD, a
+ * file, gets one line: the exit code (128 and the signal where one ended it), milliseconds on the
+ * clock, and the most mebibytes that one of its processes had in memory. */
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static pid_t command;
+
+static void on_alarm(int number)
+{
+    (void)number;
+    kill(command, SIGKILL);
+}
+
+static int fail(const char *what)
+{
+    fprintf(stderr, "limited: %s: %s\n", what, strerror(errno));
+    return EXIT_FAILURE;
+}
+
+static double now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 5) {
+        fprintf(stderr, "limited: expected RECORD SECONDS MEBIBYTES COMMAND [ARGUMENT...]\n");
+        return EXIT_FAILURE;
+    }
+    rlim_t bytes = (rlim_t)strtoull(argv[3], NULL, 10) << 20;
+    double start = now_ms();
+    struct rusage used;
+    int status = 0;
+    command = fork();
+    if (command < 0)
+        return fail("fork");
+    if (command == 0) {
+        setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+        execvp(argv[4], argv + 4);
+        _exit(fail(argv[4]));
+    }
+    signal(SIGALRM, on_alarm);
+    alarm((unsigned)strtoul(argv[2], NULL, 10));
+    while (wait4(command, &status, 0, &used) < 0 && errno == EINTR)
+        ;
+    FILE *record = fopen(argv[1], "w");
+    if (!record)
+        return fail(argv[1]);
+    fprintf(record, "%d %.0f %.0f\n",
+            WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), now_ms() - start,
+            (double)used.ru_maxrss / 1024.0);
+    return fclose(record) == 0 ? EXIT_SUCCESS : fail(argv[1]);
+}
