@@ -36,16 +36,25 @@ static void put_pattern(const char *words)
             putchar('|');
 }
 
-/* A description's first sentence or clause, for a line in a menu, without what shells read. */
-static void put_summary(const char *doc)
+/* The first clause of a description, for a line in a menu, between single quotes: quote is how one
+ * stands there. What zsh reads in a description is left out. */
+static void put_summary(const char *doc, const char *quote)
 {
-    size_t most = 60;
-    for (const char *c = doc; *c && *c != ';' && most > 0; c++, most--) {
-        if (c > doc && strchr(".:(", *c) && (*c == '(' || c[1] == ' ' || c[1] == '\0'))
+    size_t length = 0, most = 60;
+    for (size_t i = 1; i <= most && doc[i - 1]; i++)
+        if (strchr(" ;.(", doc[i]) || doc[i] == '\0')
+            length = i;
+    for (size_t i = 0; i < length; i++) {
+        if (doc[i] == ';' || (doc[i] == '.' && doc[i + 1] == ' '))
             break;
-        putchar(strchr("'\"[]:\\$`", *c) ? ' ' : *c);
+        if (doc[i] == '\'')
+            fputs(quote, stdout);
+        else
+            putchar(strchr("\"[]:\\$`", doc[i]) ? ' ' : doc[i]);
     }
 }
+
+static const char quote_zsh[] = "'\\''", quote_fish[] = "\\'";
 
 /* Top-level commands and blend's have one word each here. */
 static const char *last_word(const char *name)
@@ -224,7 +233,7 @@ static void zsh_option(const DescribedOption *described)
                    kind == DESCRIBED_NOTHING ? ""
                    : optional                ? "=-"
                                              : "=");
-        put_summary(option->doc);
+        put_summary(option->doc, quote_zsh);
         printf("]");
         if (optional)
             printf(":");
@@ -266,7 +275,7 @@ static void zsh_commands(const DescribedCommand *commands, size_t count, const c
         if (!(length ? below : !strchr(commands[i].name, ' ')))
             continue;
         printf(" '%s:", last_word(commands[i].name));
-        put_summary(commands[i].summary);
+        put_summary(commands[i].summary, quote_zsh);
         printf("'");
     }
 }
@@ -351,10 +360,10 @@ static void fish_command(const Completed *completed)
         if (describe_letter(option))
             printf(" -s %c", describe_letter(option));
         printf(" -d '");
-        put_summary(option->doc);
+        put_summary(option->doc, quote_fish);
         printf("'");
         if (kind != DESCRIBED_NOTHING && !(option->flags & OPTION_ARG_OPTIONAL))
-            printf(" -r");
+            printf(files && !words.count ? " -r" : " -x");
         if (kind == DESCRIBED_SCENE)
             fish_value(DESCRIBED_VALUES, text_of(&words), "gltf glb ");
         else
@@ -380,7 +389,7 @@ static void print_fish(const DescribedCommand *commands, size_t count)
         printf("complete -c peel -n 'test (__peel_command) = \"%.*s\"' -a %s -d '",
                space ? (int)(space - commands[i].name) : 0, commands[i].name,
                last_word(commands[i].name));
-        put_summary(commands[i].summary);
+        put_summary(commands[i].summary, quote_fish);
         printf("'\n");
     }
     printf("complete -c peel -n 'test (__peel_command) = \"\"' -l help -l version -l man -l "
