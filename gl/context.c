@@ -1,8 +1,10 @@
+#define _GNU_SOURCE /* dlinfo */
 #include "context.h"
 
 #include "platform.h"
 
 #include <dlfcn.h>
+#include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -182,6 +184,14 @@ void context_close(Context *context)
 void context_choose(ContextKind kind)
 {
     platform = kind == CONTEXT_EGL ? &platform_egl : &platform_osmesa;
+}
+
+void context_library(char *path, size_t size)
+{
+    struct link_map *map = NULL;
+    void *library = dlopen(platform->file, RTLD_LAZY | RTLD_LOCAL); /* stays, as platform.h says */
+    bool found = library && dlinfo(library, RTLD_DI_LINKMAP, &map) == 0;
+    snprintf(path, size, "%s", found ? map->l_name : "");
 }
 
 Result context_use(Context *context)

@@ -4,6 +4,8 @@
 
 #include "api.h"
 
+#include <stddef.h>
+
 typedef struct Context Context;
 
 /* Limits the renderer depends on. */
@@ -22,6 +24,10 @@ typedef enum ContextKind {
 
 /* Where contexts come from; for the process, before its first one. */
 void context_choose(ContextKind kind);
+
+/* The file of the library that contexts come from, as the loader finds it; "" where it does not.
+ * Makes no context. */
+void context_library(char *path, size_t size);
 
 /* Opens a context, loads gl and reports driver errors to it. threads > 0 asks llvmpipe for that
  * many rasterizer threads; only the first context of a process can, and only where LP_NUM_THREADS

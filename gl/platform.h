@@ -14,6 +14,7 @@ typedef struct Platform {
     bool (*use)(void *handle); /* makes it current; NULL: none */
     void (*close)(void *handle);
     ApiFunction (*lookup)(const char *name);
+    const char *file; /* the library's, for the loader */
 } Platform;
 
 extern const Platform platform_osmesa, platform_egl;

@@ -46,7 +46,7 @@ static Result load(void)
     };
     if (egl.destroy)
         return RESULT_OK;
-    return platform_load("libEGL.so.1", "packages libegl1, libegl-mesa0 and libgl1-mesa-dri",
+    return platform_load(platform_egl.file, "packages libegl1, libegl-mesa0 and libgl1-mesa-dri",
                          symbols, sizeof symbols / sizeof *symbols);
 }
 
@@ -154,4 +154,4 @@ static ApiFunction lookup_egl(const char *name)
     return (ApiFunction)egl.proc_address(name);
 }
 
-const Platform platform_egl = {open_egl, use_egl, close_egl, lookup_egl};
+const Platform platform_egl = {open_egl, use_egl, close_egl, lookup_egl, "libEGL.so.1"};

@@ -32,7 +32,7 @@ static Result load(void)
     };
     if (osmesa.proc_address)
         return RESULT_OK;
-    return platform_load("libOSMesa.so.8", "package libosmesa6", symbols,
+    return platform_load(platform_osmesa.file, "package libosmesa6", symbols,
                          sizeof symbols / sizeof *symbols);
 }
 
@@ -86,4 +86,5 @@ static ApiFunction lookup_osmesa(const char *name)
     return (ApiFunction)osmesa.proc_address(name);
 }
 
-const Platform platform_osmesa = {open_osmesa, use_osmesa, close_osmesa, lookup_osmesa};
+const Platform platform_osmesa = {open_osmesa, use_osmesa, close_osmesa, lookup_osmesa,
+                                  "libOSMesa.so.8"};

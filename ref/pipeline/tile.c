@@ -1,5 +1,8 @@
 #include "ref/pipeline/tile.h"
 
+#include "number/op.h"
+#include "ref/pipeline/pipeline.h"
+
 typedef struct TileVariant {
     Result (*render)(Pass *pass, Frame *frame);
     bool available;
@@ -23,6 +26,21 @@ static TileVariant variant(SimdChoice simd)
     default:
         return (TileVariant){0};
     }
+}
+
+bool pipeline_simd_built(SimdChoice simd)
+{
+    return variant(simd).render != NULL;
+}
+
+bool pipeline_simd_runs(SimdChoice simd)
+{
+    return variant(simd).available;
+}
+
+bool pipeline_flushes_in_hardware(void)
+{
+    return OP_HARDWARE_FLUSH;
 }
 
 Result tile_render(Pass *pass, Frame *frame)

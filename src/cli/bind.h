@@ -13,7 +13,17 @@ extern const BenchRenderer bind_bench[BENCH_RENDERERS];
 /* RENDERER_… by name, −1 when there is none. */
 int bind_find_renderer(const char *name);
 
-/* argv[0] is "peel <command>"; returns the exit code. */
+typedef struct Command {
+    const char *name;
+    const char *summary; /* a line */
+    /* argv[0] is "peel <command>"; returns the exit code. */
+    int (*run)(int argc, char **argv);
+    const struct Command *subcommands; /* up to a row without a name; NULL: none */
+} Command;
+
+extern const Command commands[];          /* up to a row without a name */
+extern const Command blend_subcommands[]; /* alike */
+
 int cmd_bench(int argc, char **argv);
 int cmd_blend(int argc, char **argv);
 int cmd_blend_check(int argc, char **argv);

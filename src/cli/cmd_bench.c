@@ -58,7 +58,7 @@ static const struct argp_option command_options[] = {
     {"size", KEY_SIZE, "LIST", 0, "Image sizes WxH (default 1280x720)", 1},
     {"runs", KEY_RUNS, "N", 0, "Frames of each renderer, in turn, after one (default 3)", 1},
     {"no-error", KEY_NO_ERROR, 0, 0, "Do not render truth to hold the images against", 1},
-    {"preset", KEY_PRESET, "NAME", 0,
+    {"preset", KEY_PRESET, "paper", 0,
      "paper: teapot_hall and teapot_hall_stress, 1920x1080, passes 4,8,12,16, lights "
      "16,32,64,128, threads 2; what is given beside it counts",
      1},

@@ -5,24 +5,20 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef struct Subcommand {
-    const char *name;
-    const char *summary;
-    int (*run)(int argc, char **argv);
-} Subcommand;
-
-static const Subcommand subcommands[] = {
-    {"check", "somebody's results for test vectors: which arithmetic made them", cmd_blend_check},
-    {"eval", "a calculator: every intermediate value of a blend", cmd_blend_eval},
-    {"vectors", "test vectors of blending, with results", cmd_blend_vectors},
+const Command blend_subcommands[] = {
+    {"check", "somebody's results for test vectors: which arithmetic made them", cmd_blend_check,
+     NULL},
+    {"eval", "a calculator: every intermediate value of a blend", cmd_blend_eval, NULL},
+    {"vectors", "test vectors of blending, with results", cmd_blend_vectors, NULL},
+    {0},
 };
 
 static void print_help(void)
 {
     printf("Usage: peel blend SUBCOMMAND [OPTION...] [ARGUMENT...]\n"
            "Blend arithmetic: what it should give, and what somebody's gives.\n\n");
-    for (size_t i = 0; i < sizeof subcommands / sizeof *subcommands; i++)
-        printf("  peel blend %-8s %s\n", subcommands[i].name, subcommands[i].summary);
+    for (const Command *command = blend_subcommands; command->name; command++)
+        printf("  peel blend %-8s %s\n", command->name, command->summary);
     printf("\n'peel blend SUBCOMMAND --help' shows a subcommand's options.\n");
 }
 
@@ -35,13 +31,13 @@ int cmd_blend(int argc, char **argv)
         print_help();
         return EXIT_AGREE;
     }
-    for (size_t i = 0; i < sizeof subcommands / sizeof *subcommands; i++) {
-        if (strcmp(argv[1], subcommands[i].name) != 0)
+    for (const Command *command = blend_subcommands; command->name; command++) {
+        if (strcmp(argv[1], command->name) != 0)
             continue;
         char name[48];
-        snprintf(name, sizeof name, "%s %s", argv[0], subcommands[i].name);
+        snprintf(name, sizeof name, "%s %s", argv[0], command->name);
         argv[1] = name;
-        return subcommands[i].run(argc - 1, argv + 1);
+        return command->run(argc - 1, argv + 1);
     }
     return options_fail(
         result_fail(RESULT_BAD_INPUT, "blend: '%s': expected check, eval or vectors", argv[1]));

@@ -51,7 +51,7 @@ static const struct argp_option command_options[] = {
      "under (default), over, over-premultiplied, over-transmittance, add, max, weighted-sum, "
      "product, replace, keep, seed, or factors in GL's words: one,one-minus-src-alpha[:FUNC]",
      0},
-    {"format", KEY_FORMAT, "F", 0,
+    {"format", KEY_FORMAT, OPTIONS_BLEND_FORMATS, 0,
      "What is stored after each layer: rgba32f (default), rgba16f, rgba16, rgba8, rg32f, r32f", 0},
     {"arithmetic", KEY_ARITHMETIC, "A", 0,
      "exact (default), driver, another name of 'peel blend check --list', or key=value pairs; "

@@ -40,12 +40,12 @@ enum {
 };
 
 static const struct argp_option vectors_options[] = {
-    {"set", KEY_SET, "SET", 0,
+    {"set", KEY_SET, "exhaustive|directed|random|sequences", 0,
      "exhaustive (default of rgba8: all triples of codes), directed (default else: special values "
      "and constructed cases), random, or sequences (2 to 256 layers, front to back)",
      0},
-    {"format", KEY_FORMAT, "FORMAT", 0, "rgba8 (default), rgba16, rgba16f, rgba32f, rg32f or r32f",
-     0},
+    {"format", KEY_FORMAT, OPTIONS_BLEND_FORMATS, 0,
+     "rgba8 (default), rgba16, rgba16f, rgba32f, rg32f or r32f", 0},
     {"equation", KEY_EQUATION, "EQUATION", 0,
      "A name (--list) or factors in GL's words: 'one,one-minus-src-alpha', 'one,one:max'. Default "
      "under",
@@ -57,7 +57,7 @@ static const struct argp_option vectors_options[] = {
     {"seed", KEY_SEED, "N", 0, "Of random and sequences (default 1)", 0},
     {"count", KEY_COUNT, "N", 0, "How many (default: the whole set; of random 65536)", 0},
     {"first", KEY_FIRST, "N", 0, "The index of the first (default 0)", 0},
-    {"form", KEY_FORM, "FORM", 0,
+    {"form", KEY_FORM, "csv|jsonl|bin", 0,
      "csv, jsonl or bin (default: by the ending of FILE, .csv, .jsonl or .bin; else csv)", 0},
     {"output", 'o', "FILE", 0, "Write to FILE (default, and -: standard output)", 0},
     {"checksum", KEY_CHECKSUM, 0, 0,

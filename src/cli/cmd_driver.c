@@ -23,7 +23,7 @@ enum {
 };
 
 static const struct argp_option command_options[] = {
-    {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 0},
+    {"gl", KEY_GL, OPTIONS_GL_NAMES, 0, OPTIONS_GL_HELP, 0},
     {"fma", KEY_FMA, "on|off", 0,
      "Whether Mesa's software driver fuses multiply-adds (default: as the processor can)", 0},
     {"json", KEY_JSON, "FILE", 0, "Write the table as JSON", 0},

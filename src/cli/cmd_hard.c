@@ -34,7 +34,7 @@ static const struct argp_option command_options[] = {
     {"ci", KEY_CI, 0, 0, "Of every case the first three configurations only", 0},
     {"export", KEY_EXPORT, "DIR", 0, "Write the cases' scenes to DIR/NAME.gltf and do nothing else",
      0},
-    {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 0},
+    {"gl", KEY_GL, OPTIONS_GL_NAMES, 0, OPTIONS_GL_HELP, 0},
     {0},
 };
 

@@ -30,7 +30,7 @@ static const struct argp_option command_options[] = {
      "Find the cheapest method, passes, accumulation and G-buffer formats whose difference from "
      "truth on this scene is at most E, by measuring ref; those given as options stay",
      0},
-    {"metric", KEY_METRIC, "NAME", 0,
+    {"metric", KEY_METRIC, "max|rmse|p99", 0,
      "What E is of: max (default: the greatest difference of all pixels), rmse or p99 (the 99th "
      "percentile of the pixels' greatest)",
      0},

@@ -29,7 +29,7 @@ enum {
 };
 
 static const struct argp_option command_options[] = {
-    {"with", KEY_WITH, "NAME", 0, "Renderer: ref (default), gl or truth", 0},
+    {"with", KEY_WITH, "ref|gl|truth", 0, "Renderer: ref (default), gl or truth", 0},
     {"output", 'o', "FILE", 0,
      "PNG: display-transformed; EXR: linear R, G, B over the background, A = coverage", 0},
     {"trace", KEY_TRACE, "FILE", 0, "Every buffer of every step as one multi-part EXR", 0},

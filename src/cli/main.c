@@ -2,7 +2,10 @@
 #include "base/file.h"
 #include "base/result.h"
 #include "cli/bind.h"
+#include "cli/completion.h"
+#include "cli/manual.h"
 #include "cli/options.h"
+#include "cli/version.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -11,41 +14,41 @@
 #include <string.h>
 #include <unistd.h>
 
-typedef struct Command {
-    const char *name;
-    const char *summary;
-    int (*run)(int argc, char **argv);
-} Command;
-
-static const Command commands[] = {
-    {"render", "one renderer to PNG, EXR or deep EXR, with --trace every buffer", cmd_render},
-    {"bench", "speed against error, over scenes, passes, lights, threads and more", cmd_bench},
-    {"blend", "blend arithmetic: test vectors, checking results, a calculator", cmd_blend},
-    {"check", "somebody's image or passes against the reference", cmd_check},
-    {"compare", "all three renderers; table, JSON, report", cmd_compare},
-    {"diagnose", "which known mistake explains an image by another program", cmd_diagnose},
-    {"diff", "two images or traces: idiff's figures and exit codes, and ULP", cmd_diff},
-    {"driver", "what the local GL driver keeps of the number rules", cmd_driver},
-    {"explain", "step by step: a page with the pipeline in it, or one pixel's history",
-     cmd_explain},
-    {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten},
-    {"hard", "the hard cases, each against its own expectation", cmd_hard},
-    {"methods", "list the methods of --method", cmd_methods},
-    {"plan", "what a scene needs, and the cheapest settings that reach an error", cmd_plan},
-    {"scenes", "list the built-in scenes, or write one as glTF", cmd_scenes},
+const Command commands[] = {
+    {"render", "one renderer to PNG, EXR or deep EXR, with --trace every buffer", cmd_render, NULL},
+    {"bench", "speed against error, over scenes, passes, lights, threads and more", cmd_bench,
+     NULL},
+    {"blend", "blend arithmetic: test vectors, checking results, a calculator", cmd_blend,
+     blend_subcommands},
+    {"check", "somebody's image or passes against the reference", cmd_check, NULL},
+    {"compare", "all three renderers; table, JSON, report", cmd_compare, NULL},
+    {"diagnose", "which known mistake explains an image by another program", cmd_diagnose, NULL},
+    {"diff", "two images or traces: idiff's figures and exit codes, and ULP", cmd_diff, NULL},
+    {"driver", "what the local GL driver keeps of the number rules", cmd_driver, NULL},
+    {"explain", "step by step: a page with the pipeline in it, or one pixel's history", cmd_explain,
+     NULL},
+    {"flatten", "a deep EXR to a flat EXR or PNG", cmd_flatten, NULL},
+    {"hard", "the hard cases, each against its own expectation", cmd_hard, NULL},
+    {"methods", "list the methods of --method", cmd_methods, NULL},
+    {"plan", "what a scene needs, and the cheapest settings that reach an error", cmd_plan, NULL},
+    {"scenes", "list the built-in scenes, or write one as glTF", cmd_scenes, NULL},
+    {0},
 };
 
 static void print_help(FILE *out)
 {
     fprintf(out, "Usage: peel COMMAND [OPTION...] [ARGUMENT...]\n"
                  "The reference for order-independent transparency by depth peeling.\n\n");
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
-        fprintf(out, "  peel %-9s %s\n", commands[i].name, commands[i].summary);
-    fprintf(out,
-            "\n'peel COMMAND --help' shows a command's options.\n\n"
-            "Exit codes: 0 agree or done, 1 warning threshold, 2 differ beyond the threshold,\n"
-            "3 sizes differ, 4 bad input, usage or environment (one line on stderr says "
-            "what).\n");
+    for (const Command *command = commands; command->name; command++)
+        fprintf(out, "  peel %-9s %s\n", command->name, command->summary);
+    fprintf(
+        out,
+        "\n'peel COMMAND --help' shows a command's options, 'peel --man COMMAND | man -l -' its\n"
+        "manual page, 'peel --version' what this build is of ('--version --json': as JSON), and\n"
+        "'peel --completion bash', zsh or fish prints completion for that shell.\n\n"
+        "Exit codes: 0 agree or done, 1 warning threshold, 2 differ beyond the threshold,\n"
+        "3 sizes differ, 4 bad input, usage or environment (one line on stderr says "
+        "what).\n");
 }
 
 /* Files must not be opened under the numbers of streams that were closed. */
@@ -89,17 +92,19 @@ static int run(int argc, char **argv)
         print_help(stdout);
         return EXIT_AGREE;
     }
-    if (strcmp(argv[1], "--version") == 0) {
-        printf("peel %s\n", PEEL_VERSION);
-        return EXIT_AGREE;
-    }
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        if (strcmp(argv[1], commands[i].name) != 0)
+    if (strcmp(argv[1], "--version") == 0)
+        return version_print(argc - 2, argv + 2);
+    if (strcmp(argv[1], "--man") == 0)
+        return manual_print(argc - 2, argv + 2);
+    if (strcmp(argv[1], "--completion") == 0)
+        return completion_print(argc - 2, argv + 2);
+    for (const Command *command = commands; command->name; command++) {
+        if (strcmp(argv[1], command->name) != 0)
             continue;
         char name[32];
-        snprintf(name, sizeof name, "peel %s", commands[i].name);
+        snprintf(name, sizeof name, "peel %s", command->name);
         argv[1] = name;
-        return commands[i].run(argc - 1, argv + 1);
+        return command->run(argc - 1, argv + 1);
     }
     return options_fail(
         result_fail(RESULT_BAD_INPUT, "'%s' is no command; see 'peel --help'", argv[1]));

@@ -58,9 +58,24 @@ static bool is_known(const struct argp *argp, unsigned flags, const char *word)
     return false;
 }
 
+static struct {
+    OptionsVisit visit;
+    void *context;
+} description;
+
+void options_describe(OptionsVisit visit, void *context)
+{
+    description.visit = visit;
+    description.context = context;
+}
+
 static int parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *input)
 {
     reported = false;
+    if (description.visit) {
+        description.visit(description.context, argp, flags & ARGP_LONG_ONLY);
+        return OPTIONS_HELPED;
+    }
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0) {
             argp_help(argp, stdout, ARGP_HELP_STD_HELP & ~ARGP_HELP_EXIT_OK, argv[0]);

@@ -55,6 +55,11 @@ int options_parse(const struct argp *argp, int argc, char **argv, void *input);
 /* The same where a single dash may begin long options too: -fail as well as --fail. */
 int options_parse_dash(const struct argp *argp, int argc, char **argv, void *input);
 
+/* Until it is called again with NULL, options_parse parses nothing: it gives what it would parse by
+ * to visit and returns OPTIONS_HELPED. dash: a single dash may begin long options. */
+typedef void (*OptionsVisit)(void *context, const struct argp *argp, bool dash);
+void options_describe(OptionsVisit visit, void *context);
+
 /* For parsers: one line on stderr, and the error code that options_parse turns into exit 4. */
 error_t options_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
@@ -64,7 +69,9 @@ bool options_real(const char *text, double low, double high, double *out);
 
 /* Values of options that several commands have; 0, or the error of options_error. --gl chooses for
  * the process. */
-#define OPTIONS_GL_HELP "Where OpenGL comes from: osmesa (default) or egl"
+#define OPTIONS_BLEND_FORMATS "rgba8|rgba16|rgba16f|rgba32f|rg32f|r32f"
+#define OPTIONS_GL_NAMES      "osmesa|egl"
+#define OPTIONS_GL_HELP       "Where OpenGL comes from: osmesa (default) or egl"
 error_t options_gl(const char *text);
 error_t options_size(const char *text, RenderDesc *out);
 error_t options_lights(const char *text, RenderDesc *out);

@@ -111,7 +111,7 @@ static const struct argp_option settings[] = {
     {"time", KEY_TIME, "SECONDS", 0, "Turns the lights (default 0)", 1},
     {"opacity", KEY_OPACITY, "A", 0, "Opacity 0 to 1 of every material; below 1 all are peeled", 1},
     {"background", KEY_BACKGROUND, "R,G,B", 0, "Linear background colour (default the scene's)", 1},
-    {"profile", KEY_PROFILE, "NAME", 0,
+    {"profile", KEY_PROFILE, "default|seed", 0,
      "default, or seed: the number formats and choices of the original program", 1},
     {"cull", KEY_CULL, "MODE", 0,
      "Back faces left out: gltf (default: of single-sided materials), seed (of opaque ones), none",
@@ -165,7 +165,7 @@ static const struct argp_option settings[] = {
      "Fused multiply-add in fixed-function arithmetic (default: as the GL driver does; without gl, "
      "on)",
      1},
-    {"gl", KEY_GL, "NAME", 0, OPTIONS_GL_HELP, 1},
+    {"gl", KEY_GL, OPTIONS_GL_NAMES, 0, OPTIONS_GL_HELP, 1},
     {"simd", KEY_SIMD, "NAME", 0,
      "Instructions of ref's fast path: auto (default), scalar, sse2, avx2, avx512; same bits", 1},
     {"tile", KEY_TILE, "N", 0,
