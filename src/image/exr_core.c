@@ -111,7 +111,9 @@ void exr_reader_close(ExrReader *reader)
 /* On success the caller ends with reader_close. */
 Result exr_reader_open(const char *path, ExrReader *out)
 {
-    *out = (ExrReader){.path = path, .descriptor = open(path, O_RDONLY | O_CLOEXEC)};
+    /* A pipe must not be waited for. */
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    *out = (ExrReader){.path = path, .descriptor = descriptor};
     struct stat status;
     int error = 0;
     if (out->descriptor < 0 || fstat(out->descriptor, &status) != 0)

@@ -87,7 +87,7 @@ small='--size 8x8 --lights 2 --threads 1'
     sweep explain tutorial $small -o page
     sweep explain tutorial $small --pixel 4,4
     sweep explain tutorial $small --pixel 4,4 --json j.json
-    sweep explain --course --size 8x8 -o course
+    sweep explain --course -o course
     sweep flatten ../deep.exr -o a.exr
     sweep flatten ../deep.exr -o a.png
     sweep plan tutorial $small
@@ -95,7 +95,6 @@ small='--size 8x8 --lights 2 --threads 1'
     sweep methods
     sweep scenes
     sweep scenes tutorial -o a.gltf
-    sweep scenes ../textured.gltf -o a.glb
     sweep scenes tutorial --export out --size 8x8
     sweep scenes --contract -o contract.html
     sweep blend eval --format rgba8 '#ff000080' '#00ff0080' --json j.json
