@@ -1,12 +1,11 @@
 #!/bin/sh
 # Every allocation of our own fails in turn, in every command and form of output: one line and exit
-# code 4, or the same result without it. Usage: allocations.sh FAULTY PEEL SOURCE_DIR [RUNS]
+# code 4, or the same result without it. Usage: allocations.sh FAULTY PEEL [RUNS]
 # RUNS: so many of each command (default 0: each allocation, alone and with all that follow).
 set -u
 faulty=$1
 peel=$2
-source=$3
-runs=${4-0}
+runs=${3-0}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
