@@ -41,11 +41,11 @@ streams() {
     # A reader that has gone away, with and without the signal.
     mkfifo pipe
     for case in default:141 ignore:4; do
-        true <pipe &
-        exits ${case#*:} 'a reader that has gone' env --${case%:*}-signal=PIPE sh -c \
-            '"$0" blend vectors --set random --count 30000 >pipe' "$peel"
-        wait
+        exits "${case#*:}" 'a reader that has gone' env "--${case%:*}-signal=PIPE" sh -c \
+            ': <pipe & exec 3>pipe; wait; exec "$0" methods >&3' "$peel"
     done
+    exits 4 'a reader that has gone' sh -c \
+        ': <pipe & exec 3>pipe; wait; exec "$0" blend vectors --set random --count 9 >&3' "$peel"
     rm pipe
 }
 
