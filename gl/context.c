@@ -5,6 +5,7 @@
 
 #include <dlfcn.h>
 #include <link.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,6 +80,45 @@ static Result check_driver_name(void)
     return result_fail(RESULT_NO_GL, "GALLIUM_DRIVER=%s: expected llvmpipe or softpipe", name);
 }
 
+int context_threads(void)
+{
+    const char *text = getenv("LP_NUM_THREADS");
+    long threads = text ? strtol(text, NULL, 0) : sysconf(_SC_NPROCESSORS_ONLN);
+    return threads < 1 ? 1 : threads > 1024 ? 1024 : (int)threads;
+}
+
+static void *pass_through(void *gate)
+{
+    pthread_mutex_lock(gate);
+    pthread_mutex_unlock(gate);
+    return NULL;
+}
+
+/* Whether so many threads can be there at once. */
+static bool can_start(int count)
+{
+    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    pthread_t *threads = calloc((size_t)count, sizeof *threads);
+    int started = 0;
+    pthread_mutex_lock(&gate);
+    while (threads && started < count &&
+           pthread_create(&threads[started], NULL, pass_through, &gate) == 0)
+        started++;
+    pthread_mutex_unlock(&gate);
+    for (int i = 0; i < started; i++)
+        pthread_join(threads[i], NULL);
+    free(threads);
+    return started == count;
+}
+
+/* llvmpipe waits for ever for a thread that it could not start: where there are too few for its
+ * rasterizer, its compute shaders and its cache, it shall have none. */
+static void check_threads(void)
+{
+    if (!can_start(2 * context_threads() + 2))
+        setenv("LP_NUM_THREADS", "0", 1);
+}
+
 /* llvmpipe reads its environment once, when the first context is made. */
 static void prepare_environment(int threads)
 {
@@ -99,13 +139,7 @@ static void prepare_environment(int threads)
         snprintf(text, sizeof text, "%d", threads);
         setenv("LP_NUM_THREADS", text, 0);
     }
-}
-
-int context_threads(void)
-{
-    const char *text = getenv("LP_NUM_THREADS");
-    long threads = text ? strtol(text, NULL, 0) : sysconf(_SC_NPROCESSORS_ONLN);
-    return threads < 1 ? 1 : threads > 1024 ? 1024 : (int)threads;
+    check_threads();
 }
 
 static Result check_driver(Context *context)

@@ -1,4 +1,5 @@
 /* Reading JSON lines. */
+#include "base/json_memory.h"
 #include "blend/sequence.h"
 #include "blend/vector_parts.h"
 #include "number/op.h"
@@ -15,7 +16,13 @@ static Result next_object(VectorReader *reader, const char *what, json_t **out)
     Result result = vector_read_line(reader, what);
     if (result != RESULT_OK)
         return result;
+    json_memory_begin();
     *out = json_loadb(reader->line, reader->length, JSON_REJECT_DUPLICATES, &error);
+    result = json_memory_check(reader->path, RESULT_OK);
+    if (result != RESULT_OK) {
+        json_decref(*out);
+        return result;
+    }
     if (!*out)
         return vector_read_fail(reader, "column %d: %s, expected %s", error.column,
                                 vector_read_quote(error.text, quote), what);

@@ -8,6 +8,7 @@
 #include "cli/version.h"
 
 #include <fcntl.h>
+#include <gmp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,28 +52,37 @@ static void print_help(FILE *out)
         "what).\n");
 }
 
-/* Files must not be opened under the numbers of streams that were closed. */
+/* Files must not be opened under the numbers of streams that were closed. What cannot be printed
+ * is an error: so a closed standard output refuses to be written to. */
 static void open_standard_streams(void)
 {
+    static const int modes[] = {O_RDONLY, O_RDONLY, O_RDWR};
     for (int descriptor = 0; descriptor <= STDERR_FILENO; descriptor++)
-        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
+        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", modes[descriptor]) != descriptor)
             abort();
 }
 
 /* Leaves neither a temporary file nor a progress line behind. */
-static void on_signal(int number)
+static void clean_up(void)
 {
     static const char clear_line[] = "\r\033[K";
     file_remove_temporaries();
     if (isatty(STDERR_FILENO) && write(STDERR_FILENO, clear_line, sizeof clear_line - 1) < 0) {
         /* nothing more to do */
     }
+}
+
+static void on_signal(int number)
+{
+    clean_up();
     raise(number); /* SA_RESETHAND: ends the program as the signal does */
 }
 
+/* SIGABRT: libraries that find no memory call abort(). */
 static void handle_signals(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGABRT};
+    signal(SIGXFSZ, SIG_IGN); /* a file that grows too large is a failed write */
     struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESETHAND | SA_NODEFER};
     sigemptyset(&action.sa_mask);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
@@ -80,6 +90,28 @@ static void handle_signals(void)
         if (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler == SIG_DFL)
             sigaction(numbers[i], &action, NULL);
     }
+}
+
+/* GMP has no other way to fail than to end the program. */
+static void *exact_memory(void *memory, size_t bytes)
+{
+    void *out = realloc(memory, bytes);
+    if (out)
+        return out;
+    clean_up();
+    fprintf(stderr, "peel: out of memory: %zu bytes for exact arithmetic\n", bytes);
+    _exit(EXIT_BAD_INPUT);
+}
+
+static void *exact_allocate(size_t bytes)
+{
+    return exact_memory(NULL, bytes);
+}
+
+static void *exact_reallocate(void *memory, size_t old, size_t bytes)
+{
+    (void)old;
+    return exact_memory(memory, bytes);
 }
 
 static int run(int argc, char **argv)
@@ -114,6 +146,7 @@ int main(int argc, char **argv)
 {
     open_standard_streams();
     handle_signals();
+    mp_set_memory_functions(exact_allocate, exact_reallocate, NULL);
     result_warnings_enable(true);
     int code = run(argc, argv);
     if (fflush(stdout) != 0 || ferror(stdout)) {

@@ -37,8 +37,11 @@ static Result read_png(const char *path, size_t max_bytes, Planes *out)
         result = result_fail(RESULT_BAD_INPUT, "%s: no image, expected PNG or OpenEXR", path);
     if (result == RESULT_OK)
         result = decode_image(bytes, count, path, &image);
+    int channels = 0;
     if (result == RESULT_OK)
-        result = planes_from_image(&image, decode_channels(bytes, count), max_bytes, path, out);
+        result = decode_channels(bytes, count, path, &channels);
+    if (result == RESULT_OK)
+        result = planes_from_image(&image, channels, max_bytes, path, out);
     image_free(&image);
     free(bytes);
     return result;

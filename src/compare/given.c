@@ -41,7 +41,10 @@ static Result load_png(const char *path, GivenImage *out)
         return result;
     result = decode_image(bytes, count, path, &out->stored);
     out->kind = "PNG";
-    out->has_alpha = result == RESULT_OK && decode_channels(bytes, count) % 2 == 0;
+    int channels = 0;
+    if (result == RESULT_OK)
+        result = decode_channels(bytes, count, path, &channels);
+    out->has_alpha = channels % 2 == 0;
     free(bytes);
     return result;
 }

@@ -4,6 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether an allocation of stb's has failed: it takes that for a fault of the image in places, and
+ * for another kind of image. */
+static _Thread_local bool short_of_memory;
+
+static void *decode_grow(void *memory, size_t size)
+{
+    void *out = realloc(memory, size);
+    short_of_memory |= !out;
+    return out;
+}
+
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"
@@ -19,6 +30,9 @@
 #define STBI_NO_STDIO
 #define STBI_NO_SIMD /* one code for all processors */
 #define STBI_FAILURE_USERMSG
+#define STBI_MALLOC(size) decode_grow(NULL, size)
+#define STBI_REALLOC      decode_grow
+#define STBI_FREE         free
 /* Declared and defined under different names, which a compiler warns of at the file's end. */
 #define stbi_set_unpremultiply_on_load_thread stbi__unpremultiply_on_load_thread
 #include <stb_image.h>
@@ -32,11 +46,16 @@ static const char *kind_of(const unsigned char *bytes, size_t count)
     return count >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0 ? "JPEG" : NULL;
 }
 
+static Result out_of_memory(const char *label)
+{
+    return result_fail(RESULT_NO_MEMORY, "%s: out of memory for its pixels", label);
+}
+
 static Result stb_failure(const char *label, const char *kind)
 {
     const char *reason = stbi_failure_reason();
-    if (reason && strcmp(reason, "Out of memory") == 0)
-        return result_fail(RESULT_NO_MEMORY, "%s: out of memory for its pixels", label);
+    if (short_of_memory || (reason && strcmp(reason, "Out of memory") == 0))
+        return out_of_memory(label);
     return result_fail(RESULT_BAD_INPUT, "%s: cannot decode the %s: %s", label, kind,
                        reason ? reason : "no reason given");
 }
@@ -95,6 +114,7 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     if (count > INT_MAX)
         return result_fail(RESULT_BAD_INPUT, "%s: %zu bytes of %s, expected below 2^31", label,
                            count, kind);
+    short_of_memory = false;
     const char *fault = *kind == 'J' ? jpeg_fault(bytes, count) : NULL;
     if (fault)
         return result_fail(RESULT_BAD_INPUT, "%s: cannot decode the JPEG: %s", label, fault);
@@ -121,12 +141,19 @@ Result decode_image(const unsigned char *bytes, size_t count, const char *label,
                                                         &channels, STBI_rgb_alpha);
     if (!pixels)
         return stb_failure(label, kind);
+    if (short_of_memory) {
+        free(pixels);
+        return out_of_memory(label);
+    }
     *out = (Image){width, height, wide ? FORMAT_RGBA16 : FORMAT_RGBA8, pixels};
     return RESULT_OK;
 }
 
-int decode_channels(const unsigned char *bytes, size_t count)
+Result decode_channels(const unsigned char *bytes, size_t count, const char *label, int *channels)
 {
-    int width, height, channels = 4;
-    return stbi_info_from_memory(bytes, (int)count, &width, &height, &channels) ? channels : 4;
+    int width, height;
+    short_of_memory = false;
+    if (!stbi_info_from_memory(bytes, (int)count, &width, &height, channels))
+        return stb_failure(label, kind_of(bytes, count));
+    return RESULT_OK;
 }

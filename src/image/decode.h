@@ -24,7 +24,7 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
 Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out);
 
 /* How many channels the file stores, of an image that was decoded: 1 grey, 2 grey and alpha, 3 RGB,
- * 4 RGBA; a palette counts as its colours. */
-int decode_channels(const unsigned char *bytes, size_t count);
+ * 4 RGBA; a palette counts as its colours. NO_MEMORY. */
+Result decode_channels(const unsigned char *bytes, size_t count, const char *label, int *channels);
 
 #endif

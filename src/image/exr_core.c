@@ -111,16 +111,18 @@ void exr_reader_close(ExrReader *reader)
 /* On success the caller ends with reader_close. */
 Result exr_reader_open(const char *path, ExrReader *out)
 {
-    *out = (ExrReader){.path = path, .descriptor = open(path, O_RDONLY | O_CLOEXEC)};
+    /* A pipe must not be waited for. */
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    *out = (ExrReader){.path = path, .descriptor = descriptor};
     struct stat status;
-    int error = 0;
-    if (out->descriptor < 0 || fstat(out->descriptor, &status) != 0)
-        error = errno;
+    Result result = RESULT_OK;
+    if (descriptor < 0 || fstat(descriptor, &status) != 0)
+        result = result_fail(RESULT_IO, "%s: cannot read this file: %s", path, strerror(errno));
     else if (!S_ISREG(status.st_mode))
-        error = S_ISDIR(status.st_mode) ? EISDIR : ESPIPE;
-    if (error) {
+        result = result_fail(RESULT_BAD_INPUT, "%s: not a regular file", path);
+    if (result != RESULT_OK) {
         exr_reader_close(out);
-        return result_fail(RESULT_IO, "%s: cannot read this file: %s", path, strerror(error));
+        return result;
     }
     out->size = status.st_size;
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -133,7 +135,7 @@ Result exr_reader_open(const char *path, ExrReader *out)
     exr_result_t code = exr_start_read(&out->context, path, &setup);
     if (code == EXR_ERR_SUCCESS)
         return RESULT_OK;
-    Result result = exr_reader_fail(out, code);
+    result = exr_reader_fail(out, code);
     exr_reader_close(out);
     return result;
 }

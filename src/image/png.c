@@ -6,10 +6,14 @@
 #include <stdlib.h>
 #include <zlib.h>
 
+/* What png_deflate has made last: stb loses it when there is no memory to go on. */
+static _Thread_local unsigned char *deflated;
+
 /* stb frees what this returns with free(). Level 6: stb's own compressor is slower and larger. */
 static unsigned char *png_deflate(unsigned char *data, int size, int *out_size, int quality)
 {
     (void)quality;
+    deflated = NULL;
     uLongf compressed = compressBound((uLong)size);
     unsigned char *out = compressed <= INT_MAX - 64 ? malloc(compressed) : NULL;
     if (!out || compress2(out, &compressed, data, (uLong)size, 6) != Z_OK) {
@@ -17,6 +21,7 @@ static unsigned char *png_deflate(unsigned char *data, int size, int *out_size, 
         return NULL;
     }
     *out_size = (int)compressed;
+    deflated = out;
     return out;
 }
 
@@ -32,11 +37,6 @@ static unsigned char *png_deflate(unsigned char *data, int size, int *out_size, 
 #define STBIW_ZLIB_COMPRESS png_deflate
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
-
-static void put(void *context, void *data, int size)
-{
-    file_writer_put(context, data, (size_t)size);
-}
 
 /* Rows of RGB without alpha, so that viewers and other tools cannot misread it. */
 static unsigned char *drop_alpha(const Image *image)
@@ -61,37 +61,41 @@ static Result check(const Image *image, const char *label, int channels)
     return RESULT_OK;
 }
 
-Result png_encode(const Image *image, const char *label, unsigned char **bytes, size_t *count)
+static Result encode(const void *pixels, const Image *image, int channels, const char *label,
+                     unsigned char **bytes, size_t *count)
 {
     int size = 0;
-    Result result = check(image, label, 4);
-    if (result)
-        return result;
-    *bytes = stbi_write_png_to_mem(image->pixels, image->width * 4, image->width, image->height, 4,
-                                   &size);
-    if (!*bytes)
+    deflated = NULL;
+    *bytes = stbi_write_png_to_mem(pixels, image->width * channels, image->width, image->height,
+                                   channels, &size);
+    if (!*bytes) {
+        free(deflated);
         return result_fail(RESULT_NO_MEMORY, "%s: out of memory", label);
+    }
     *count = (size_t)size;
     return RESULT_OK;
 }
 
+Result png_encode(const Image *image, const char *label, unsigned char **bytes, size_t *count)
+{
+    Result result = check(image, label, 4);
+    return result ? result : encode(image->pixels, image, 4, label, bytes, count);
+}
+
 Result png_write(const Image *image, const char *path)
 {
-    Result checked = check(image, path, 3);
-    if (checked)
-        return checked;
+    unsigned char *bytes = NULL;
+    size_t count = 0;
+    Result result = check(image, path, 3);
+    if (result)
+        return result;
     unsigned char *rgb = drop_alpha(image);
     if (!rgb)
         return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
-    FileWriter writer;
-    Result result = file_writer_open(path, &writer);
-    if (result == RESULT_OK) {
-        int made = stbi_write_png_to_func(put, &writer, image->width, image->height, 3, rgb,
-                                          image->width * 3);
-        result = file_writer_close(&writer, made != 0);
-        if (result == RESULT_OK && !made)
-            result = result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
-    }
+    result = encode(rgb, image, 3, path, &bytes, &count);
     free(rgb);
+    if (result == RESULT_OK)
+        result = file_write(path, bytes, count);
+    free(bytes);
     return result;
 }

@@ -1,6 +1,7 @@
 #include "report/document.h"
 
 #include "base/file.h"
+#include "base/json_memory.h"
 #include "number/numeral.h"
 
 #include <math.h>
@@ -31,8 +32,9 @@ void document_append(Document *json, json_t *array, json_t *value)
 
 json_t *document_string(const char *text)
 {
+    json_memory_begin();
     json_t *value = json_string(text);
-    if (value)
+    if (value || json_memory_check("", RESULT_OK) != RESULT_OK)
         return value;
     char *ascii = strdup(text);
     for (char *c = ascii; c && *c; c++)

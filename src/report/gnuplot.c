@@ -59,6 +59,16 @@ static Result run(FILE *const streams[STREAMS])
     return result_fail(RESULT_INTERNAL, "gnuplot: failed: %s", line);
 }
 
+/* gnuplot does not look whether its output was written. */
+static bool is_whole(const char *svg, size_t size)
+{
+    static const char end[] = "</svg>";
+    size_t length = sizeof end - 1;
+    while (size > 0 && (svg[size - 1] == '\n' || svg[size - 1] == ' '))
+        size--;
+    return size >= length && memcmp(svg + size - length, end, length) == 0;
+}
+
 static Result copy(FILE *drawing, const char *path)
 {
     fseek(drawing, 0, SEEK_END);
@@ -69,9 +79,14 @@ static Result copy(FILE *drawing, const char *path)
     char *data = memory_array((size_t)size, 1);
     if (!data)
         return RESULT_NO_MEMORY;
-    Result result = fread(data, 1, (size_t)size, drawing) == (size_t)size
-                        ? file_write(path, data, (size_t)size)
-                        : result_fail(RESULT_IO, "gnuplot: cannot read its drawing back");
+    Result result = RESULT_OK;
+    if (fread(data, 1, (size_t)size, drawing) != (size_t)size)
+        result = result_fail(RESULT_IO, "gnuplot: cannot read its drawing back");
+    else if (!is_whole(data, (size_t)size))
+        result =
+            result_fail(RESULT_IO, "gnuplot: %s is cut off: no room for a temporary file", path);
+    else
+        result = file_write(path, data, (size_t)size);
     free(data);
     return result;
 }

@@ -1,6 +1,7 @@
 #include "scene/gltf_assimp.h"
 
 #include "base/file.h"
+#include "base/json_memory.h"
 #include "base/memory.h"
 #include "scene/gltf_file.h"
 
@@ -121,11 +122,15 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
 /* The reduced document in the form that the file has: text, or binary with the same BIN chunk. */
 static Result serialize(const char *path, const GltfJson *json, Document *document)
 {
+    json_memory_begin();
     json_t *reduced = gltf_json_reduced(json);
     char *text = json_dumps(reduced, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(reduced);
-    if (!text)
-        return result_fail(RESULT_NO_MEMORY, "%s: out of memory for its JSON text", path);
+    Result whole = json_memory_check(path, RESULT_OK);
+    if (whole) {
+        free(text);
+        return whole;
+    }
     if (gltf_file_kind(path) != 1) {
         document->bytes = (unsigned char *)text;
         document->count = strlen(text);

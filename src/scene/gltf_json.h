@@ -71,8 +71,9 @@ typedef struct GltfJson {
 
 void gltf_json_free(GltfJson *json); /* what gltf_read made */
 
-/* A new document with nothing but triangles, materials' factors and nodes; NULL without memory.
- * The indices of nodes, meshes and materials are kept. */
+/* A new document with nothing but triangles, materials' factors and nodes. The
+ * indices of nodes, meshes and materials are kept. Without memory it may lack parts: see
+ * base/json_memory.h. */
 json_t *gltf_json_reduced(const GltfJson *json);
 
 /* One warning that names everything noted, extensions included; silent when there is nothing. */

@@ -1,6 +1,7 @@
 #include "scene/gltf_read.h"
 
 #include "base/file.h"
+#include "base/json_memory.h"
 #include "scene/gltf_check.h"
 #include "scene/gltf_file.h"
 #include "scene/gltf_graph.h"
@@ -69,9 +70,11 @@ static Result parse(const char *path, GltfJson *json)
     if (result)
         return result;
     json_error_t error;
+    json_memory_begin();
     json->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
-    if (!json->root && json_error_code(&error) == json_error_out_of_memory)
-        return result_fail(RESULT_NO_MEMORY, "%s: out of memory for its JSON text", path);
+    result = json_memory_check(path, RESULT_OK);
+    if (result)
+        return result;
     if (!json->root)
         return result_fail(RESULT_BAD_INPUT, "%s: not glTF: line %d, column %d: %s", path,
                            error.line, error.column, error.text);
