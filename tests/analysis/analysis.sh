@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # For the scripts beside it, which read it first: their arguments, a build, a run of the tests.
 #
 #   sh tests/analysis/NAME.sh [SOURCE_DIR] [REGEX]   all tests of CI, or those whose names match
