@@ -188,8 +188,8 @@ refuse 'no OSMesa' 'libosmesa6' compare tutorial --size 8x8
 unset LD_LIBRARY_PATH
 
 for arguments in '--help' '--version' 'compare --help'; do
-    # shellcheck disable=SC2086 # words
     sink=/dev/full
+    # shellcheck disable=SC2086 # several words
     refuse "full disk under $arguments" 'standard output' $arguments
 done
 

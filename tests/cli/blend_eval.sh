@@ -5,13 +5,16 @@ set -u
 peel=$1
 . "$(dirname "$0")/checks.sh"
 
-# holds WHAT CONDITION: a Python expression about the JSON document d in eval.json.
+# holds WHAT EXPRESSION: JavaScript of d, the document in eval.json, with layers, its first
+# arithmetic's, and differ(A, B, C): whether A - B is not C, fractions in text.
 holds() {
-    exits 0 "$1" python3 -c "import json, sys
-from fractions import Fraction
-d = json.load(open('eval.json'))
-layers = d['arithmetics'][0]['layers']
-sys.exit(0 if ($2) else 1)"
+    json_holds "$1" eval.json "((layers, ratio) => {
+        const differ = (...texts) => {
+            const [[a, m], [b, n], [c, o]] = texts.map(ratio);
+            return (a * n - b * m) * o !== c * m * n;
+        };
+        return $2;
+    })(d.arithmetics[0].layers, (text) => [...text.split('/'), '1'].slice(0, 2).map(BigInt))"
 }
 
 # refused WHAT PATTERN ARGUMENT...: exit 4 and one line that has PATTERN.
@@ -30,6 +33,7 @@ refused() {
 exits 0 'help' "$peel" blend eval --help
 cp output help
 exits 0 'two examples' test "$(grep -c '^  peel blend eval' help)" -eq 2
+# shellcheck disable=SC2016 # example.sh expands it
 sed -n 's/^  peel blend eval/"$peel" blend eval/p' help >examples
 exits 0 '64 of 63.749' grep -q '63.749/255 arrives' help
 sed -n 1p examples >example.sh
@@ -107,25 +111,24 @@ exits 0 'brief by itself' test "$(grep -c '^ *[0-9][0-9]*  *64/255' output)" -eq
 
 exits 0 'JSON' "$peel" blend eval --format rgba8 --json eval.json --arithmetic exact,driver \
     '#ff000080' '#00ff0080'
-holds 'the head' "(d['equation'], d['format'], d['straight']) == ('under', 'rgba8', True)
-    and d['colour_formula'] == 'C = C + T*a*c' and [a['name'] for a in d['arithmetics']]
-    == ['exact', 'driver']"
-holds 'fractions' "Fraction(layers[1]['channels']['green']['exact']['fraction'])
-    == Fraction(127 * 128, 255 * 255)"
-holds 'errors are differences' "all(Fraction(c['steps']['stored']['fraction'])
-    - Fraction(c['exact']['fraction']) == Fraction(c['off_fraction'])
-    for a in d['arithmetics'] for l in a['layers'] for c in l['channels'].values())"
-holds 'bits' "layers[1]['channels']['green']['code'] == 64
-    and layers[1]['channels']['green']['bits'] == '0x40'"
-holds 'both sides' "d['arithmetics'][0]['under_over']['green']['under']['fraction'] == '64/255'"
-holds 'totals' "d['arithmetics'][0]['totals']['step'] == 'stored'"
+holds 'the head' "d.equation === 'under' && d.format === 'rgba8' && d.straight === true
+    && d.colour_formula === 'C = C + T*a*c'
+    && d.arithmetics.map((a) => a.name).join() === 'exact,driver'"
+holds 'fractions' "!differ(layers[1].channels.green.exact.fraction, '0', '16256/65025')"
+holds 'errors are differences' "!d.arithmetics.flatMap((a) => a.layers)
+    .flatMap((l) => Object.values(l.channels))
+    .some((c) => differ(c.steps.stored.fraction, c.exact.fraction, c.off_fraction))"
+holds 'bits' "layers[1].channels.green.code === 64
+    && layers[1].channels.green.bits === '0x40'"
+holds 'both sides' "d.arithmetics[0].under_over.green.under.fraction === '64/255'"
+holds 'totals' "d.arithmetics[0].totals.step === 'stored'"
 exits 0 'JSON of what is no number' "$peel" blend eval --json eval.json nan,inf,1e40,1
-holds 'no number' "layers[0]['channels']['red']['exact']['value'] is None
-    and layers[0]['channels']['green']['exact']['hex'] == 'inf'
-    and layers[0]['channels']['blue']['off_ulp'] is None"
+holds 'no number' "layers[0].channels.red.exact.value === null
+    && layers[0].channels.green.exact.hex === 'inf'
+    && layers[0].channels.blue.off_ulp === null"
 exits 0 'JSON of a format with one channel' "$peel" blend eval --format r32f --json eval.json 1,2,3,1
-holds 'one channel' "list(layers[0]['channels']) == ['red'] and len(d['start']) == 1
-    and d['arithmetics'][0]['under_over'] is None"
+holds 'one channel' "Object.keys(layers[0].channels).join() === 'red'
+    && d.start.length === 1 && d.arithmetics[0].under_over === null"
 
 # ---- refusals ----
 

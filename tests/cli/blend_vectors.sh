@@ -43,12 +43,12 @@ same 'row 3' "$(sed -n 13p four.csv)" \
 # The same in all forms, to a file and to standard output.
 for form in csv jsonl bin binary; do
     ending=${form%ary}
-    exits 0 "$form" "$peel" blend vectors --set random --count 100 --format rgba16f -o out.$ending
+    exits 0 "$form" "$peel" blend vectors --set random --count 100 --format rgba16f -o "out.$ending"
     vectors --set random --count 100 --format rgba16f --form $form >piped
-    exits 0 "$form: piped" cmp piped out.$ending
+    exits 0 "$form: piped" cmp piped "out.$ending"
     vectors --set random --count 100 --format rgba16f --form $form -o - >dashed
     exits 0 "$form: -" cmp piped dashed
-    rm out.$ending
+    rm "out.$ending"
 done
 
 # A part is that part of the whole.
@@ -66,13 +66,13 @@ fi
 vectors --set random --count 300 --form bin --arithmetic driver | tail -c +297 |
     head -c 7200 | od -An -v -tx1 -w24 | cut -c 61-72 | tr -d ' \n' >hex
 sum=$(sed 's/../\\x&/g' hex | xargs -0 printf '%b' | sha256sum | cut -c 1-64)
-vectors --set random --count 300 --checksum --arithmetic all >all
-same 'a checksum' "$(sed -n 's/  driver$//p' all)" "$sum"
+vectors --set random --count 300 --checksum --arithmetic all >sums
+same 'a checksum' "$(sed -n 's/  driver$//p' sums)" "$sum"
 same 'checksum alone' "$(vectors --set random --count 300 --checksum --arithmetic driver |
     sed -n 2p)" "$sum  driver"
 same 'checksums and threads' "$(vectors --set random --count 70000 --checksum --threads 1)" \
     "$(vectors --set random --count 70000 --checksum --threads 3)"
-exits 0 'wrong ones are among them' grep -q ' factors-swapped$' all
+exits 0 'wrong ones are among them' grep -q ' factors-swapped$' sums
 
 # Sequences.
 vectors --set sequences --format rgba8 --first 10 --count 2 >sequences.csv

@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # For the scripts beside it, which read it first: a scratch directory to work in, and counts.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -55,8 +56,21 @@ narrow() {
     fi
 }
 
-# json_holds WHAT FILE EXPRESSION: JavaScript of d, the document.
+# json_holds WHAT FILE EXPRESSION: JavaScript of d, the document; `output` stays.
 json_holds() {
-    exits 0 "$1" node -e "const d = JSON.parse(require('fs').readFileSync('$2'));
-        process.exit($3 ? 0 : 1)"
+    if node -e "const d = JSON.parse(require('fs').readFileSync('$2'));
+        process.exit($3 ? 0 : 1)"; then
+        passed=$((passed + 1))
+    else
+        echo "FAIL $1: in $2, expected $3"
+        failed=$((failed + 1))
+    fi
+}
+
+# opaque_red FROM TO: a glTF whose material red is opaque, so that some surfaces are hidden.
+opaque_red() {
+    exits 0 'the red plane is opaque' node -e "const fs = require('fs');
+        const scene = JSON.parse(fs.readFileSync('$1'));
+        scene.materials.find((one) => one.name === 'red').alphaMode = 'OPAQUE';
+        fs.writeFileSync('$2', JSON.stringify(scene))"
 }

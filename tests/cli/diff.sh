@@ -16,17 +16,6 @@ make_image() {
         failed=$((failed + 1))
 }
 
-# says WHAT PATTERN: the last command's output has a line that matches.
-says() {
-    if grep -q -- "$2" output; then
-        passed=$((passed + 1))
-    else
-        echo "FAIL $1: expected '$2' in:"
-        head -30 output
-        failed=$((failed + 1))
-    fi
-}
-
 # same ARGUMENT...: idiff's exit code, and every line that idiff prints, in its order.
 same() {
     idiff "$@" >theirs 2>&1
@@ -133,65 +122,65 @@ exits 0 'none where nothing differs' "$peel" diff -od -o none.png a.exr a.exr
 exits 1 'none where nothing differs' test -e none.png
 exits 2 'heat map' "$peel" diff -o heat.png a.exr b.exr
 exits 0 'heat map: 42 of 48 are black' oiiotool heat.png --rangecheck 0,0,0 0,0,0
-says 'heat map' '^ *6  *>'
+has 'heat map' '^ *6  *>'
 exits 2 'heat map, scaled' "$peel" diff -o bright.png -scale 8 a.exr b.exr
 exits 0 'heat map, scaled: 1 is the brightest' oiiotool --dumpdata bright.png
-says 'brightest' 'Pixel (2, 1): 255 2'
+has 'brightest' 'Pixel (2, 1): 255 2'
 
 # Not as idiff 2.4: what it says of thresholds and sizes but does not do; what is not finite.
 exits 2 'quiet' "$peel" diff -q a.exr b.exr
 exits 0 'quiet' test ! -s output
 exits 1 'a warning without a failure' "$peel" diff -fail 1 -warn .1 a.exr b.exr
-says 'a warning' '^WARNING$'
+has 'a warning' '^WARNING$'
 exits 1 'a relative one' "$peel" diff -fail 1 -warnrelative .5 a.exr b.exr
 exits 0 'a relative one' "$peel" diff -fail 1 -warnrelative .6 a.exr b.exr
 exits 3 'sizes' "$peel" diff a.exr wide.exr
-says 'sizes' '^peel: sizes differ: a.exr has 8x6 pixels, wide.exr has 9x6$'
+has 'sizes' '^peel: sizes differ: a.exr has 8x6 pixels, wide.exr has 9x6$'
 exits 3 'sizes, quietly' "$peel" diff -q a.exr wide.exr --json sizes.json -o sizes.png
 exits 0 'sizes in JSON' grep -q '"verdict": "sizes"' sizes.json
 exits 1 'no picture of sizes' test -e sizes.png
 exits 3 'windows' "$peel" diff a.exr moved.exr
-says 'windows' 'a.exr has 8x6 pixels from 0,0, moved.exr has 8x6 from 1,0$'
+has 'windows' 'a.exr has 8x6 pixels from 0,0, moved.exr has 8x6 from 1,0$'
 for other in a inf minus; do
     exits 2 "NaN and $other" "$peel" diff -fail 9 -warn 9 -failpercent 100 nan.exr $other.exr
-    says 'NaN' '48 pixels are finite on one side only: a failure'
+    has 'NaN' '48 pixels are finite on one side only: a failure'
 done
 exits 2 'infinities' "$peel" diff inf.exr minus.exr
-says 'infinities' 'Not finite: R: 0 NaN and 48 infinite vs 0 NaN and 48 infinite'
-says 'no average of it' '^  Mean error = 0$'
+has 'infinities' 'Not finite: R: 0 NaN and 48 infinite vs 0 NaN and 48 infinite'
+has 'no average of it' '^  Mean error = 0$'
 exits 1 'hardwarn' "$peel" diff -fail 1 -warn 1 -hardwarn .1 a.exr b.exr
 exits 2 'hardfail' "$peel" diff -fail 1 -warn 1 -hardfail .1 a.exr b.exr
 
 # Distances of stored values.
 exits 2 'ULP of 8 bits' "$peel" diff a.png b.png
-says 'ULP of 8 bits' '^  G  *unorm8 .* 2, 1  *6  *26  *42  *0  *0  *0  *6$'
+has 'ULP of 8 bits' '^  G  *unorm8 .* 2, 1  *6  *26  *42  *0  *0  *0  *6$'
 exits 0 '8 and 16 bits' "$peel" diff -v a.png a16.png
-says '8 and 16 bits' '^  R  *unorm8/unorm16  *0  *0  *inf  *0  *-  *0  *0  *48$'
+has '8 and 16 bits' '^  R  *unorm8/unorm16  *0  *0  *inf  *0  *-  *0  *0  *48$'
 exits 2 'ULP of halves' "$peel" diff half.exr half2.exr
-says 'ULP of halves' '^  R  *half .* 410  *0  *0  *0  *0  *0  *48$'
+has 'ULP of halves' '^  R  *half .* 410  *0  *0  *0  *0  *0  *48$'
 exits 0 'zeros' "$peel" diff -v zero.exr minus_zero.exr
-says 'zeros' '^  Y  *float .* 48  *1  *0  *48$'
+has 'zeros' '^  Y  *float .* 48  *1  *0  *48$'
 
 # Channels and parts.
 exits 2 'alpha in one' "$peel" diff a.png alpha.png
-says 'alpha in one' 'Channels that read as 0, being in one file only: A of "a.png"'
+has 'alpha in one' 'Channels that read as 0, being in one file only: A of "a.png"'
 exits 0 'chosen channels' "$peel" diff --channels R,G,B a.png alpha.png
 exits 0 'chosen channels' "$peel" diff --channels R,G,B,A z.exr a.exr
 exits 0 'the first part' "$peel" diff two.exr two_other.exr
-says 'the first part' 'Only compared the first subimage (of 2 and 2, respectively)'
+has 'the first part' 'Only compared the first subimage (of 2 and 2, respectively)'
 exits 2 'all parts' "$peel" diff -a two.exr two_other.exr
-says 'all parts' '^First differing subimage: 1 subimage01$'
+has 'all parts' '^First differing subimage: 1 subimage01$'
 exits 2 'parts of one' "$peel" diff -a two.exr a.exr
-says 'parts of one' '^Subimage 1 subimage01 : only "two.exr" has it$'
+has 'parts of one' '^Subimage 1 subimage01 : only "two.exr" has it$'
 exits 2 'worst' "$peel" diff --worst 2 a.exr b.exr
-says 'worst' '^  2, 1  *G  *0.375 '
+has 'worst' '^  2, 1  *G  *0.375 '
 exits 0 'two of them' test "$(grep -c ', 1  *G  *0.375 ' output)" = 2
 
 exits 2 'what is seen' "$peel" diff -p -fail 1 -warn 1 a.exr b.exr
-says 'what is seen' '^  6 pixels (12.5%) failed the perceptual test$'
+has 'what is seen' '^  6 pixels (12.5%) failed the perceptual test$'
 exits 0 'what may be seen' "$peel" diff -p -fail 1 -warn 1 -failpercent 12.5 a.exr b.exr
 exits 0 'what is not seen' "$peel" diff -p -v a.exr a.exr
-says 'what is not seen' '^  0 pixels (  0%) failed the perceptual test$'
+has 'what is not seen' '^  0 pixels (  0%) failed the perceptual test$'
 
 # Deep images and traces.
 for alpha in 0.5 0.25; do
@@ -203,21 +192,21 @@ done
 exits 0 'other samples' "$peel" render chain --size 48x32 --with truth --deep -o more.exr
 exits 0 'deep, equal' "$peel" diff deep0.5.exr deep0.5.exr
 exits 2 'deep' "$peel" diff deep0.5.exr deep0.25.exr -o deep.png
-says 'deep' '^  Z  *float  *0  *0 '
-says 'deep' '^  A  *float  *0.25  *0.25 '
-says 'deep' 'as many in every pixel$'
+has 'deep' '^  Z  *float  *0  *0 '
+has 'deep' '^  A  *float  *0.25  *0.25 '
+has 'deep' 'as many in every pixel$'
 exits 2 'deep, counts' "$peel" diff deep0.5.exr more.exr
-says 'deep, counts' 'pixels have another number: a failure; first @ ('
+has 'deep, counts' 'pixels have another number: a failure; first @ ('
 exits 2 'deep and flat' "$peel" diff deep0.5.exr a.exr
-says 'deep and flat' '^One image contains deep data, the other does not$'
+has 'deep and flat' '^One image contains deep data, the other does not$'
 exits 0 'trace, equal' "$peel" diff trace0.5.exr trace0.5.exr
 exits 2 'trace' "$peel" diff trace0.5.exr trace0.25.exr --json trace.json
-says 'trace' '^First differing buffer: peel.0.diffuse ('
+has 'trace' '^First differing buffer: peel.0.diffuse ('
 exits 0 'trace, JSON' grep -q '"first_differing": "peel.0.diffuse"' trace.json
 exits 0 'trace of gl' "$peel" render tutorial --size 48x32 --lights 4 --opacity 0.5 --with gl \
     --trace gl.exr
 exits 0 'ref and gl, bit for bit' "$peel" diff -fail 0 -warn 0 trace0.5.exr gl.exr
-says 'ref and gl' '^Left out: [0-9]* \*.primitive buffers'
+has 'ref and gl' '^Left out: [0-9]* \*.primitive buffers'
 grep -q 'iffer' output && echo "FAIL ref and gl: a buffer differs" && failed=$((failed + 1))
 
 # Classes.
@@ -225,7 +214,7 @@ exits 0 'seed' "$peel" render chain --size 64x48 --lights 4 --profile seed -o se
 exits 0 'truth' "$peel" render chain --size 64x48 --lights 4 --with truth -o truth.exr
 exits 2 'classes' "$peel" diff seed.exr truth.exr --scene chain --lights 4 --profile seed \
     --json classes.json
-says 'classes' '^  gbuffer  *[0-9,]* .*quantisation of the G-buffer$'
+has 'classes' '^  gbuffer  *[0-9,]* .*quantisation of the G-buffer$'
 # sum_of FIRST LAST: the sum of the numbers between two lines of classes.json.
 sum_of() {
     sed -n "/$1/,/$2/s/.*: \([0-9]*\),*$/\1/p" classes.json | awk '{ sum += $1 } END { print sum }'

@@ -19,7 +19,9 @@ for scene in tutorial crossing_planes teapot_hall; do
         "peel-id rgba32f 60" "forward rgba16f 60" "dual rgba32f 60" "dual rgba8 40" \
         "forward-dual rgba32f 30" "linked-list rgba16 60" "painter rgba32f 60" \
         "weighted-average rgba32f 20" "weighted-sum rgba16f 20" "weighted-blended rgba8 40"; do
+        # shellcheck disable=SC2086 # three words
         set -- $settings
+        # shellcheck disable=SC2046 # as many words as pixels
         "$peel" explain "$scene" --renderers ref --size 192x108 --method "$1" --accum "$2" \
             $("$REPLAY" pixels "$3" "$seed" 192 108) --json histories.json
         "$REPLAY" check "$scene" "$1" "$2" 192 108 histories.json >> replayed.txt ||
@@ -34,6 +36,7 @@ awk '{ pixels += $1; steps += $3 } END { exit !(pixels >= 3000 && steps > pixels
 for method in peel peel-id forward dual forward-dual linked-list painter weighted-average \
     weighted-blended; do
     for accum in rgba32f rgba8; do
+        # shellcheck disable=SC2046 # as many words as pixels
         "$peel" explain tutorial --size 96x54 --method $method --accum $accum \
             $("$REPLAY" pixels 30 "$seed" 96 54) --json sides.json
         "$REPLAY" sides sides.json > said.txt || fail "$method, $accum: $(tail -3 said.txt)"
@@ -66,8 +69,9 @@ grep -q "gl: the same steps" narrow.txt || fail "gl differs"
 refused() {
     code=0
     "$peel" explain "$@" > out.txt 2> err.txt || code=$?
-    [ "$code" = 4 ] && [ "$(wc -l < err.txt)" = 1 ] && [ ! -s out.txt ] ||
+    if [ "$code" != 4 ] || [ "$(wc -l < err.txt)" != 1 ] || [ -s out.txt ]; then
         fail "explain $*: exit $code: $(cat err.txt)"
+    fi
 }
 refused tutorial --size 64x36 --pixel 64,0
 refused tutorial --size 64x36 --pixel 0,36
@@ -76,6 +80,7 @@ refused tutorial --pixel 1
 refused tutorial --pixel 1,2,3
 refused tutorial --pixel 1,x
 refused tutorial --pixel 99999999999,0
+refused tutorial --size 64x36 --pixel 4294967297,0
 refused tutorial --pixel 1,1 --renderers ref,none
 refused tutorial --pixel 1,1 --method all
 refused tutorial --pixel 1,1 --json /no/such/directory/file.json

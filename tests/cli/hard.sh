@@ -9,14 +9,13 @@ source=$2
 exits 0 'the slice' "$peel" hard --ci --json hard.json --report page
 cat output
 check 'every expectation holds' grep -q '^AS EXPECTED$' output
-check 'JSON' sh -c 'python3 -m json.tool hard.json >pretty.json'
-check 'at least 32 cases' test "$(grep -c '"why"' pretty.json)" -ge 32
-check 'no NaN' grep -q '"nonfinite": 0,$' pretty.json
-check 'ref and gl' grep -q '"ref_gl_differing": 0$' pretty.json
+json_holds 'JSON' hard.json 'd.cases.length >= 32 && d.cases.every((one) => one.why)'
+json_holds 'no NaN' hard.json 'd.nonfinite === 0'
+json_holds 'ref and gl' hard.json 'd.ref_gl_differing === 0'
 check 'page' grep -q 'Every expectation holds' page/index.html
 for name in $("$peel" hard --list | grep -o '^[a-z0-9_]*'); do
-    check "pictures of $name" test -s page/$name-ref.png -a -s page/$name-truth.png \
-        -a -s page/$name-error.png
+    check "pictures of $name" test -s "page/$name-ref.png" -a -s "page/$name-truth.png" \
+        -a -s "page/$name-error.png"
     check "section of $name" grep -q "id=\"$name\"" page/index.html
     check "README has $name" grep -q "^| \`$name\`" "$source/README.md"
 done

@@ -67,8 +67,8 @@ for choice in '--depth d24' '--depth d16' '--accum rgba16f' '--accum rgba16' '--
 done
 exits 2 'the raw test with 16 bits repeats layers and loses others' \
     "$peel" compare tutorial --size 64x36 --tolerance 1 --peel-test raw --depth d16
-"$peel" methods | sed -n 's/^\([a-z][-a-z]*\) .*/\1/p' >names
-expect 'methods' test "$(wc -l <names)" = 10
+"$peel" methods | sed -n 's/^\([a-z][-a-z]*\) .*/\1/p' >rows
+expect 'methods' test "$(wc -l <rows)" = 10
 # The one with 8-bit materials differs more from truth: those behind it must be there all the same.
 exits 2 'every method' "$peel" compare chain.gltf --size 33x17 --lights 1 --method all \
     --tolerance 1e-4 --json all.json
@@ -98,7 +98,7 @@ while read -r method; do
     for name in opaque.depth $names accum display; do
         has "trace of $method" info "\"$name\""
     done
-done <names
+done <rows
 
 exits 0 'report and JSON' "$peel" compare chain.gltf --size 64x36 --passes 1 --json j.json \
     --report report/of/this
@@ -116,7 +116,7 @@ while read -r name; do
     has 'JSON of all methods' all.json "\"method\": \"$name\""
     has 'report of all methods' methods/of/this/index.html "<h3><a href=\"$name/index.html\">"
     has 'report of a method' "methods/of/this/$name/index.html" 'href="../index.html"'
-done <names
+done <rows
 for page in methods/of/this/index.html methods/of/this/*/index.html; do
     grep -o -E '(src|href)="[^"]*"' "$page" | cut -d '"' -f 2 | sort -u >links
     while read -r link; do

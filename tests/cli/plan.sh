@@ -5,13 +5,6 @@ set -u
 peel=$1
 . "$(dirname "$0")/checks.sh"
 
-# holds WHAT FILE CONDITION: a Python expression about the JSON document d.
-holds() {
-    exits 0 "$1" python3 -c "import json, sys
-d = json.load(open('$2'))
-sys.exit(0 if ($3) else 1)"
-}
-
 # refused WHAT PATTERN ARGUMENT...: exit 4 and one line that has PATTERN.
 refused() {
     name=$1
@@ -23,37 +16,38 @@ refused() {
     exits 0 "$name: '$pattern'" grep -q -- "$pattern" said
 }
 
-sums="d['bytes'] == sum(b['bytes'] for b in d['buffers'])
-    and sum(d['layers']['histogram']) == d['size'][0] * d['size'][1]
-    and sum(d['layers']['distinct_histogram']) == d['size'][0] * d['size'][1]
-    and len(d['layers']['histogram']) == d['layers']['max'] + 1
-    and sum(i * n for i, n in enumerate(d['layers']['histogram'])) == d['layers']['fragments']
-    and all(n['what'] and n['why'] for n in d['needed'] + d['left_out'])"
-left_out="[n['what'] for n in d['left_out']]"
+sum='(list) => list.reduce((a, b) => a + b, 0)'
+sums="((sum, pixels) => d.bytes === sum(d.buffers.map((b) => b.bytes))
+    && sum(d.layers.histogram) === pixels && sum(d.layers.distinct_histogram) === pixels
+    && d.layers.histogram.length === d.layers.max + 1
+    && sum(d.layers.histogram.map((n, i) => i * n)) === d.layers.fragments
+    && [...d.needed, ...d.left_out].every((n) => n.what && n.why))($sum, d.size[0] * d.size[1])"
+left_out='d.left_out.map((n) => n.what)'
 
 for scene in tutorial chain crossing_planes alpha_ladder teapot_hall; do
     exits 0 "$scene" "$peel" plan $scene --size 96x54 --json $scene.json
-    holds "$scene adds up" $scene.json "$sums"
-    holds "$scene: nothing is searched" $scene.json "d['choices'] == [] and d['command'] is None"
+    json_holds "$scene adds up" $scene.json "$sums"
+    json_holds "$scene: nothing is searched" $scene.json "d.choices.length === 0 && d.command === null"
 done
-holds 'layers of a ladder' alpha_ladder.json \
-    "d['layers']['max'] == 16 and d['passes']['peel'] == 17 and d['passes']['dual'] == 9
-    and d['passes']['peel-id'] == 49 and d['passes']['painter'] == 1"
+json_holds 'layers of a ladder' alpha_ladder.json \
+    "d.layers.max === 16 && d.passes.peel === 17 && d.passes.dual === 9
+    && d.passes['peel-id'] === 49 && d.passes.painter === 1"
 
 exits 0 'unlit' "$peel" plan chain --size 96x54 --lights 0 --json unlit.json
-holds 'unlit: adds up' unlit.json "$sums"
-holds 'unlit: no normals' unlit.json "'normals' in $left_out and d['lights'] == 0
-    and not [b for b in d['buffers'] if 'normal' in b['name']]"
+json_holds 'unlit: adds up' unlit.json "$sums"
+json_holds 'unlit: no normals' unlit.json "$left_out.includes('normals') && d.lights === 0
+    && !d.buffers.some((b) => b.name.includes('normal'))"
 exits 0 'opaque' "$peel" plan tutorial --size 96x54 --opacity 1 --json opaque.json
-holds 'opaque: adds up' opaque.json "$sums"
-holds 'opaque: no peels' opaque.json "'transparent passes' in $left_out
-    and d['layers']['max'] == 0 and not [b for b in d['buffers'] if 'peel' in b['name']]"
+json_holds 'opaque: adds up' opaque.json "$sums"
+json_holds 'opaque: no peels' opaque.json "$left_out.includes('transparent passes')
+    && d.layers.max === 0 && !d.buffers.some((b) => b.name.includes('peel'))"
 exits 0 'all' "$peel" plan chain --size 96x54 --lights 0 --model all --json all.json
-holds 'all: no byte less' all.json "d['bytes'] == d['bytes_of_all'] and 'normals' not in $left_out"
-holds 'unlit: fewer bytes' unlit.json "d['bytes'] < d['bytes_of_all']"
+json_holds 'all: no byte less' all.json "d.bytes === d.bytes_of_all
+    && !$left_out.includes('normals')"
+json_holds 'unlit: fewer bytes' unlit.json "d.bytes < d.bytes_of_all"
 for method in peel linked-list dual painter; do
     exits 0 "1x1 $method" "$peel" plan tutorial --size 1x1 --method $method --json one.json
-    holds "1x1 $method adds up" one.json "$sums and d['method'] == '$method'"
+    json_holds "1x1 $method adds up" one.json "$sums && d.method === '$method'"
 done
 for with in ref gl; do
     for model in needed all; do
@@ -66,45 +60,42 @@ done
 # ---- the search ----
 
 search="plan crossing_planes --size 64x36"
-answers="sum(c['chosen'] for c in d['choices']) == 1
-    and all(c['error'] <= d['max_error'] for c in d['choices'] if c['chosen'])
-    and all(c['pareto'] for c in d['choices'] if c['chosen'])
-    and [c for c in d['choices'] if c['pareto']]"
+chosen='d.choices.filter((c) => c.chosen)'
+answers="$chosen.length === 1 && $chosen.every((c) => c.error <= d.max_error && c.pareto)"
 # shellcheck disable=SC2086 # $search is several words
 {
     exits 0 'reached' "$peel" $search --max-error 1e-3 --json found.json
-    tail -1 output >command
-    holds 'an answer' found.json "$answers"
-    holds 'the cheapest' found.json "min((c['cpu_ms'], c['chosen']) for c in d['choices']
-        if c['error'] <= d['max_error'])[1]"
-    holds 'medians' found.json "all(c['runs'] == 3 for c in d['choices'] if c['chosen'])"
-    exits 0 'the answer is a command' sh -c "$(sed "s|build/peel|'$peel'|" command)"
+    tail -1 output >line
+    json_holds 'an answer' found.json "$answers"
+    json_holds 'the cheapest' found.json "d.choices.every((c) =>
+        c.error > d.max_error || c.cpu_ms >= ${chosen}[0].cpu_ms)"
+    json_holds 'medians' found.json "$chosen.every((c) => c.runs === 3)"
+    exits 0 'the answer is a command' sh -c "$(sed "s|build/peel|'$peel'|" line)"
     exits 0 'truth' "$peel" render crossing_planes --size 64x36 --with truth -o truth.exr
     exits 0 'its image is as near as it says' idiff -q -fail 1e-3 -warn 1 image.exr truth.exr
     exits 2 'too near' "$peel" $search --max-error 0 --json none.json
     exits 0 'one line says so' test "$(grep -c '^peel: .*no settings reach it' output)" -eq 1
-    holds 'no answer' none.json "d['command'] is None and d['choices']
-        and not [c for c in d['choices'] if c['chosen']]"
+    json_holds 'no answer' none.json "d.command === null && d.choices.length > 0 && $chosen.length === 0"
     exits 0 'anything will do' "$peel" $search --max-error 1 --json any.json
-    holds 'anything' any.json "$answers"
+    json_holds 'anything' any.json "$answers"
     exits 0 'as asked for' "$peel" $search --max-error=1 --meth forward --passes=1 --accum rgba8 \
         --gbuffer seed --json asked.json
-    holds 'only that' asked.json "$answers and all((c['method'], c['passes'], c['accum'],
-        c['gbuffer']) == ('forward', 1, 'rgba8', 'seed') for c in d['choices'])"
-    tail -1 output >command
-    exits 0 'said once' test "$(grep -o -- '--[mpag][a-z]*' command | sort | uniq -d | wc -l)" -eq 0
+    json_holds 'only that' asked.json "$answers && d.choices.every((c) => c.method === 'forward'
+        && c.passes === 1 && c.accum === 'rgba8' && c.gbuffer === 'seed')"
+    tail -1 output >line
+    exits 0 'said once' test "$(grep -o -- '--[mpag][a-z]*' line | sort | uniq -d | wc -l)" -eq 0
     for metric in rmse p99; do
         exits 0 $metric "$peel" $search --max-error 1 --metric $metric --method peel --json m.json
-        holds $metric m.json "$answers and d['metric'] == '$metric'"
+        json_holds $metric m.json "$answers && d.metric === '$metric'"
     done
 }
-holds 'fewer passes were tried' found.json "any(0 < c['passes'] < d['passes']['peel'] - 1
-    for c in d['choices'])"
+json_holds 'fewer passes were tried' found.json "d.choices.some((c) =>
+    0 < c.passes && c.passes < d.passes.peel - 1)"
 exits 0 'opaque' "$peel" plan tutorial --size 32x18 --opacity 1 --max-error 1e-3 --json o.json
-holds 'opaque: passes do not matter' o.json "$answers and all(c['passes'] == 0
-    for c in d['choices'])"
+json_holds 'opaque: passes do not matter' o.json "$answers
+    && d.choices.every((c) => c.passes === 0)"
 exits 0 '1x1' "$peel" plan tutorial --size 1x1 --max-error 1 --json one.json
-holds '1x1' one.json "$answers"
+json_holds '1x1' one.json "$answers"
 
 refused 'no scene' 'no scene'
 refused 'no such scene' 'nosuch' nosuch

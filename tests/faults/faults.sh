@@ -128,6 +128,7 @@ cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING
 each_fault note_test
 [ -f "$work/tests" ] || stop "'$only': no such fault"
 row fault test outcome
+# shellcheck disable=SC2013 # a name has no blanks
 for test in $(LC_ALL=C sort -u "$work/tests"); do
     check_unchanged "$test"
 done

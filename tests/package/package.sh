@@ -79,15 +79,17 @@ cp "$source/tests/package/CMakeLists.txt" "$source/tests/package/example.c" \
 sed -n '/^### The library/,/^##/{/^    #include/,/^    }$/s/^    //p;}' "$source/README.md" \
     >"$work/user/readme.c"
 lines=$(wc -l <"$work/user/readme.c")
-[ "$lines" -ge 10 ] && [ "$lines" -le 30 ] || fail "README's program has $lines lines"
+if [ "$lines" -lt 10 ] || [ "$lines" -gt 30 ]; then
+    fail "README's program has $lines lines"
+fi
 
-clean cmake -S "$work/user" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" \
+if ! clean cmake -S "$work/user" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" \
     -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_FLAGS="$flags $warnings" \
-    -DCMAKE_CXX_FLAGS="$flags $warnings" >"$work/log" 2>&1 &&
-    clean cmake --build "$work/cmake" >>"$work/log" 2>&1 || {
+    -DCMAKE_CXX_FLAGS="$flags $warnings" >"$work/log" 2>&1 ||
+    ! clean cmake --build "$work/cmake" >>"$work/log" 2>&1; then
     cat "$work/log"
     fail 'find_package(peel CONFIG)'
-}
+fi
 
 # pkg_config OUTPUT FILE COMPILER OPTION...: compiles and links, static with --static.
 pkg_config() {
