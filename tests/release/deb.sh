@@ -5,9 +5,9 @@
 set -u
 build=$3
 . "$2/tests/cli/checks.sh"
-for tool in dpkg-shlibdeps dpkg-deb; do
+for tool in dpkg-shlibdeps dpkg-deb file; do
     command -v $tool >/dev/null || {
-        echo "deb: no $tool here: install dpkg-dev"
+        echo "deb: no $tool here: install dpkg-dev and file"
         exit 77
     }
 done
