@@ -5,7 +5,7 @@
 set -u
 source=$2
 . "$source/tests/cli/checks.sh"
-unset CCACHE_BASEDIR # which would hide a folder's name
+unset CMAKE_C_COMPILER_LAUNCHER # a cache of results would hide a folder's name
 
 mkdir one another_and_longer
 for folder in one another_and_longer; do
