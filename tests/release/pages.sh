@@ -43,6 +43,25 @@ exits 4 'no such page' "$peel" --man nonsense
 exits 4 'no such shell' "$peel" --completion ksh
 exits 4 'version of what' "$peel" --version 2
 
+# ---- the version ----
+
+exits 0 'version' "$peel" --version
+has 'version first' '^peel [0-9]*\.[0-9]*\.[0-9]*$'
+for fact in compiler build flags sanitizers simd flushing source Assimp OpenEXR jansson zlib GMP \
+    nettle glibc OSMesa; do
+    has "fact $fact" "^$fact  *[^ ]"
+done
+has 'the flags that bits rest on' '^flags .*-ffp-contract=off'
+exits 0 'version as JSON' "$peel" --version --json
+cp output version.json
+json_holds 'version as JSON' version.json 'd.version && d.simd.includes("scalar") &&
+    d.simd.includes(d.simd_here) && d.libraries.zlib.built && d.libraries.zlib.runs'
+mkdir broken && : >broken/libOSMesa.so.8
+exits 0 'version without OSMesa' env LD_LIBRARY_PATH="$work/broken" "$peel" --version
+has 'version without OSMesa' '^OSMesa .*found none$'
+
+# ---- the pages' form ----
+
 if command -v man >/dev/null && command -v groff >/dev/null; then
     for page in *.1; do
         MANWIDTH=80 man --warnings -l "$page" >page.txt 2>warnings
