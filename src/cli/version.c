@@ -1,19 +1,19 @@
 #include "cli/version.h"
 
 #include "base/text.h"
-#include "build_facts.h"
 #include "cli/options.h"
 #include "gl/context.h"
 #include "ref/pipeline/pipeline.h"
 #include "report/document.h"
-#include "source_commit.h"
 
 #include <assimp/version.h>
+#include <build_facts.h>
 #include <gmp.h>
 #include <gnu/libc-version.h>
 #include <jansson.h>
 #include <nettle/version.h>
 #include <openexr.h>
+#include <source_commit.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

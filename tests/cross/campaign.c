@@ -76,11 +76,13 @@ static void add(TrialFigures *sum, const TrialFigures *figures)
         sum->classes[i] += figures->classes[i];
 }
 
-/* A check that cannot be made on a part of a scene does not show the failure. */
+/* A check that cannot be made on a part of a scene does not show the failure; nor does any, once
+ * the run is to end. */
 static bool fails(TrialId trial, const Scene *scene, const RenderDesc *desc)
 {
     TrialFigures figures;
-    return trial_run(trial, scene, desc, &figures) == RESULT_OK && figures.differences > 0;
+    return !interrupted && trial_run(trial, scene, desc, &figures) == RESULT_OK &&
+           figures.differences > 0;
 }
 
 static bool fails_gl(const Scene *scene, const RenderDesc *desc)
@@ -111,10 +113,13 @@ static void reduce(Campaign *campaign, TrialId trial, uint64_t seed, const Scene
     static const char *const suffixes[TRIAL_COUNT] = {"gl", "paths", "truth"};
     char path[64];
     MinimisedFile file;
+    RenderDesc shown = trial_desc(trial, desc);
     if (campaign->reduced++ >= REDUCED_MAX)
         return;
+    if (!fails(trial, scene, &shown))
+        shown = *desc;
     snprintf(path, sizeof path, "campaign-%llu-%s.gltf", (unsigned long long)seed, suffixes[trial]);
-    if (minimise_to_file(scene, desc, of[trial], path, &file) != RESULT_OK)
+    if (minimise_to_file(scene, &shown, of[trial], path, &file) != RESULT_OK)
         printf("  could not be written: %s\n", result_message());
     else
         printf("  %u triangles, %zu lights left%s\n  %s\n", file.triangles, file.lights,

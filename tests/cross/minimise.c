@@ -315,7 +315,7 @@ Result minimise_to_file(const Scene *scene, const RenderDesc *desc, MinimiseFail
     if (!getcwd(folder, sizeof folder))
         *folder = '\0';
     snprintf(out->command, sizeof out->command, "build/peel compare %s/%s %s%s", folder, path,
-             options, minimal.desc.bound ? " --bound" : "");
+             options, minimal.desc.bound ? " --bound --budget" : "");
     if (result == RESULT_OK)
         result = shows(path, &minimal.desc, fails, &out->shown);
     minimise_free(&minimal);

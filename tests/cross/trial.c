@@ -195,6 +195,7 @@ static Result run_unbounded(Truthful *study, const RenderDesc *desc)
 RenderDesc trial_desc(TrialId trial, const RenderDesc *desc)
 {
     RenderDesc bounded = *desc;
+    bounded.bound = trial == TRIAL_TRUTH;
     if (trial != TRIAL_TRUTH || method_has_bound(desc))
         return bounded;
     bounded.post = POST_NONE;

@@ -46,7 +46,7 @@ row() {
 # What is not called test_ is a script that runs peel.
 build_test() {
     case $1 in
-    test_*) target=${1%_unfused} ;;
+    test_* | campaign) target=${1%_unfused} ;;
     *) target=peel ;;
     esac
     ninja -C "$build" "$target" >"$work/build.log" 2>&1

@@ -32,7 +32,10 @@ mkdir "$work/moved"
 mv "$work/first" "$work/moved/here"
 prefix=$work/moved/here
 libdir=$(dirname "$(find "$prefix" -name libpeel.a)")
-for file in bin/peel include/peel.h include/peel_dump.h include/peel_shade.h; do
+for file in bin/peel include/peel.h include/peel_dump.h include/peel_shade.h \
+    share/man/man1/peel.1.gz share/man/man1/peel-render.1.gz share/doc/peel/README.md \
+    share/bash-completion/completions/peel share/zsh/vendor-completions/_peel \
+    share/fish/vendor_completions.d/peel.fish; do
     [ -f "$prefix/$file" ] || fail "not installed: $file"
 done
 "$prefix/bin/peel" methods >/dev/null || fail 'the installed program does not run'

@@ -1,5 +1,5 @@
 # What cpack makes: Debian's packages peel, libpeel0.1 and libpeel-dev, or archives of the same.
-install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 set(CPACK_GENERATOR DEB TGZ)
 set(CPACK_PACKAGE_NAME peel)
@@ -17,7 +17,6 @@ set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 
 set(about "Renders a scene as an OpenGL pipeline does, bit for bit, in that pipeline
@@ -32,8 +31,13 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libegl1)
 
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "${about}
 This is the library: blending, rendering and comparing in memory.")
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME libpeel${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(version ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME libpeel${version})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
+set(control ${PROJECT_BINARY_DIR}/control)
+file(WRITE ${control}/triggers "activate-noawait ldconfig\n")
+file(WRITE ${control}/shlibs "libpeel ${version} libpeel${version} (>= ${PROJECT_VERSION})\n")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${control}/triggers ${control}/shlibs)
 
 set(CPACK_COMPONENT_DEV_DESCRIPTION "${about}
 This is what compiling and linking with the library takes.")
