@@ -118,7 +118,10 @@ one_file() {
 
 nothing_left() {
     set -- * .[!.]*
-    [ "$*" = '* .[!.]*' ] || violation "left behind: $*"
+    [ "$*" = '* .[!.]*' ] || {
+        violation "left behind: $*"
+        rm -rf -- "$@"
+    }
 }
 
 # one_renamed EXTENSION: the same bytes under a name of glTF. What a message quotes is left out.
