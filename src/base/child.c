@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -104,7 +105,7 @@ static void apply(const ChildLimits *limits)
 #ifndef CHILD_SANITIZED
     set_limit(RLIMIT_DATA, limits->memory ? before + limits->memory : 0);
 #endif
-    set_limit(RLIMIT_CPU, (rlim_t)limits->seconds);
+    set_limit(RLIMIT_CPU, (rlim_t)ceil(limits->seconds));
 }
 
 Result child_limit(int pipe, const ChildLimits *limits)
@@ -169,7 +170,7 @@ static bool wait_for(Child *child)
 {
     for (;;) {
         double wall_ms, cpu_ms, left_ms = -1.0;
-        if (child->limits.seconds) {
+        if (child->limits.seconds > 0.0) {
             clock_elapsed(&child->start, &wall_ms, &cpu_ms);
             left_ms = 1e3 * CHILD_PATIENCE * child->limits.seconds - wall_ms;
             child->late = left_ms <= 0.0;
@@ -267,13 +268,13 @@ static Result start(const ChildWork *work, Child *child)
 static Result tell_end(const Child *child, int status)
 {
     const char *name = child->work->name ? child->work->name : "child process";
-    int seconds = child->limits.seconds;
+    double seconds = child->limits.seconds;
     if (child->late)
-        return result_fail(RESULT_BAD_INPUT, "%s took more than %d s", name,
+        return result_fail(RESULT_BAD_INPUT, "%s took more than %g s", name,
                            CHILD_PATIENCE * seconds);
-    if (seconds && WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-        return result_fail(RESULT_BAD_INPUT, "%s took more than %d s of processor time", name,
-                           seconds);
+    if (seconds > 0.0 && WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+        return result_fail(RESULT_BAD_INPUT, "%s took more than %g s of processor time", name,
+                           ceil(seconds));
     if (WIFSIGNALED(status))
         return result_fail(RESULT_INTERNAL, "%s ended by signal %d (%s)", name, WTERMSIG(status),
                            strsignal(WTERMSIG(status)));

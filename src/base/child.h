@@ -25,7 +25,7 @@ typedef struct ChildLimits {
     /* Bytes that the child may allocate beyond what it begins with: heap and mappings, not the
      * stack. Not kept where CHILD_SANITIZED. */
     size_t memory;
-    int seconds; /* of processor time; on the clock CHILD_PATIENCE times as many */
+    double seconds; /* of processor time, rounded up; on the clock CHILD_PATIENCE times as many */
 } ChildLimits;
 
 enum {

@@ -173,7 +173,8 @@ static const struct argp_option settings[] = {
     {"model", KEY_MODEL, "WHAT", 0,
      "needed (default): leave out what this scene does not need, see peel plan; or all; same bits",
      1},
-    {"max-memory", KEY_MEMORY, "BYTES", 0, "Refuse to need more, per renderer (default 4G)", 1},
+    {"max-memory", KEY_MEMORY, "BYTES", 0,
+     "Refuse to need more, per renderer and to load the scene (default 4G)", 1},
     {0},
 };
 

@@ -27,9 +27,9 @@ ChildLimits gltf_child_limits(uint64_t bytes, size_t max_memory)
     if (memory > SIZE_MAX / 2)
         memory = SIZE_MAX / 2;
     uint64_t gibibytes = (memory + (((uint64_t)1 << 30) - 1)) >> 30;
-    int seconds =
-        gibibytes < 1000 ? (int)gibibytes * GLTF_CHILD_SECONDS : 1000 * GLTF_CHILD_SECONDS;
-    return (ChildLimits){.memory = (size_t)memory, .seconds = seconds};
+    return (ChildLimits){.memory = (size_t)memory,
+                         .seconds =
+                             GLTF_CHILD_SECONDS * (double)(gibibytes < 1000 ? gibibytes : 1000)};
 }
 
 /* ---- in the child ---------------------------------------------------------------------------- */

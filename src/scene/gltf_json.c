@@ -88,6 +88,31 @@ static json_t *reduced_node(const json_t *node)
     return pick(node, keys);
 }
 
+static json_t *reduced_scene(const json_t *scene)
+{
+    static const char *const keys[] = {"nodes", NULL};
+    return pick(scene, keys);
+}
+
+static json_t *reduced_buffer(const json_t *buffer)
+{
+    static const char *const keys[] = {"uri", "byteLength", NULL};
+    return pick(buffer, keys);
+}
+
+static json_t *reduced_view(const json_t *view)
+{
+    static const char *const keys[] = {"buffer", "byteOffset", "byteLength", "byteStride", NULL};
+    return pick(view, keys);
+}
+
+static json_t *reduced_accessor(const json_t *accessor)
+{
+    static const char *const keys[] = {"bufferView", "byteOffset", "componentType", "count", "type",
+                                       "normalized", NULL};
+    return pick(accessor, keys);
+}
+
 static void reduce_array(json_t *to, const json_t *from, const char *key,
                          json_t *(*reduce)(const json_t *))
 {
@@ -105,10 +130,14 @@ static void reduce_array(json_t *to, const json_t *from, const char *key,
 
 json_t *gltf_json_reduced(const GltfJson *json)
 {
-    static const char *const keys[] = {"asset",       "scenes",    "buffers",
-                                       "bufferViews", "accessors", NULL};
-    json_t *out = pick(json->root, keys);
+    json_t *out = json_object(), *asset = json_object();
+    json_object_set_new(asset, "version", json_string("2.0"));
+    json_object_set_new(out, "asset", asset);
     json_object_set_new(out, "scene", json_integer((json_int_t)json->scene));
+    reduce_array(out, json->root, "scenes", reduced_scene);
+    reduce_array(out, json->root, "buffers", reduced_buffer);
+    reduce_array(out, json->root, "bufferViews", reduced_view);
+    reduce_array(out, json->root, "accessors", reduced_accessor);
     reduce_array(out, json->root, "meshes", reduced_mesh);
     reduce_array(out, json->root, "materials", reduced_material);
     reduce_array(out, json->root, "nodes", reduced_node);

@@ -2,9 +2,11 @@
  *
  *   limited RECORD SECONDS MEBIBYTES COMMAND [ARGUMENT...]
  *
- * No process of it may map more than MEBIBYTES; after SECONDS on the clock it is killed. RECORD, a
- * file, gets one line: the exit code (128 and the signal where one ended it), milliseconds on the
- * clock, and the most mebibytes that one of its processes had in memory. */
+ * No process of it may map more than MEBIBYTES, or take more than SECONDS of processor time; after
+ * ten times as many on the clock, of which a busy machine needs more, it is killed. RECORD, a file,
+ * gets one line: the exit code (128 and the signal where one ended it), milliseconds of processor
+ * time, of all its processes together, and on the clock, and the most mebibytes that one of them
+ * had in memory. */
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -36,6 +38,11 @@ static double now_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
+static double ms_of(const struct timeval *time)
+{
+    return (double)time->tv_sec * 1e3 + (double)time->tv_usec * 1e-3;
+}
+
 int main(int argc, char **argv)
 {
     if (argc < 5) {
@@ -43,6 +50,7 @@ int main(int argc, char **argv)
         return EXIT_FAILURE;
     }
     rlim_t bytes = (rlim_t)strtoull(argv[3], NULL, 10) << 20;
+    rlim_t seconds = (rlim_t)strtoul(argv[2], NULL, 10);
     double start = now_ms();
     struct rusage used;
     int status = 0;
@@ -51,18 +59,20 @@ int main(int argc, char **argv)
         return fail("fork");
     if (command == 0) {
         setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+        setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds});
         execvp(argv[4], argv + 4);
         _exit(fail(argv[4]));
     }
     signal(SIGALRM, on_alarm);
-    alarm((unsigned)strtoul(argv[2], NULL, 10));
+    alarm(10 * (unsigned)seconds);
     while (wait4(command, &status, 0, &used) < 0 && errno == EINTR)
         ;
     FILE *record = fopen(argv[1], "w");
     if (!record)
         return fail(argv[1]);
-    fprintf(record, "%d %.0f %.0f\n",
-            WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), now_ms() - start,
+    fprintf(record, "%d %.0f %.0f %.0f\n",
+            WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status),
+            ms_of(&used.ru_utime) + ms_of(&used.ru_stime), now_ms() - start,
             (double)used.ru_maxrss / 1024.0);
     return fclose(record) == 0 ? EXIT_SUCCESS : fail(argv[1]);
 }

@@ -142,20 +142,23 @@ START_TEST(test_endings)
         Result (*run)(void *, int);
         Result expected;
         const char *message;
-    } cases[] = {{end_failed, RESULT_NO_GL, "no more"},
-                 {end_killed, RESULT_INTERNAL, "the worker ended by signal 9"},
-                 {end_aborted, RESULT_INTERNAL, "the worker ended "},
-                 {end_exited, RESULT_INTERNAL, "the worker ended without a result, exit code 3"},
-                 {end_silent, RESULT_INTERNAL, "the worker ended by signal 9"},
-                 {end_garbled, RESULT_INTERNAL, "the worker ended "},
-                 {end_sleeping, RESULT_BAD_INPUT, "the worker took more than 4 s"},
-                 {end_busy, RESULT_BAD_INPUT, "the worker took more than "},
-                 {end_deep, RESULT_INTERNAL, "the worker ended "}};
+        double seconds;
+    } cases[] = {
+        {end_failed, RESULT_NO_GL, "no more", 0.0},
+        {end_killed, RESULT_INTERNAL, "the worker ended by signal 9", 0.0},
+        {end_aborted, RESULT_INTERNAL, "the worker ended ", 0.0},
+        {end_exited, RESULT_INTERNAL, "the worker ended without a result, exit code 3", 0.0},
+        {end_silent, RESULT_INTERNAL, "the worker ended by signal 9", 0.0},
+        {end_garbled, RESULT_INTERNAL, "the worker ended ", 0.0},
+        {end_sleeping, RESULT_BAD_INPUT, "the worker took more than 0.4 s", 0.1},
+        {end_busy, RESULT_BAD_INPUT, "the worker took more than ", 1.0},
+        {end_deep, RESULT_INTERNAL, "the worker ended ", 0.0}};
 #ifdef CHILD_SANITIZED
     if (cases[_i].run == end_deep)
         return; /* the report would be hundreds of lines */
 #endif
-    const ChildWork work = {.run = cases[_i].run, .name = "the worker", .limits = {.seconds = 1}};
+    const ChildWork work = {
+        .run = cases[_i].run, .name = "the worker", .limits.seconds = cases[_i].seconds};
     ck_assert_int_eq(child_run(&work), cases[_i].expected);
     ck_assert_msg(strstr(result_message(), cases[_i].message), "%s", result_message());
 }

@@ -311,6 +311,20 @@ START_TEST(lights_and_extras)
 }
 END_TEST
 
+/* Extras may be of any type, and what is not modelled is not looked at. */
+START_TEST(extras_of_any_type)
+{
+    Scene scene;
+    load_quad("\"extras\":[1],\"scenes\":[{\"nodes\":[0],\"extras\":[[1]],\"name\":1,"
+              "\"extensions\":7}],\"nodes\":[{\"mesh\":0,\"extras\":\"x\"}],\"meshes\":["
+              "{\"extras\":[2],\"weights\":\"x\",\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+              "\"indices\":2,\"extras\":[]}]}],\"materials\":[{\"extras\":false}]",
+              &scene);
+    ck_assert_uint_eq(scene_triangle_count(&scene), 2);
+    scene_free(&scene);
+}
+END_TEST
+
 /* ---- what is said --------------------------------------------------------------------------- */
 
 /* What is printed on stderr while the document goes to a file, whose text is returned. */
@@ -412,6 +426,7 @@ int main(void)
     tcase_add_test(test, texture_coordinates_come_back);
     tcase_add_test(test, nodes_multiply_from_the_root);
     tcase_add_test(test, lights_and_extras);
+    tcase_add_test(test, extras_of_any_type);
     tcase_add_test(test, one_warning_names_everything);
     tcase_add_test(test, light_ranges);
     tcase_add_test(test, nothing_to_say);

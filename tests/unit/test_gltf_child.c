@@ -154,18 +154,18 @@ START_TEST(test_limits)
     const uint64_t gibibyte = (uint64_t)1 << 30;
     ChildLimits limits = gltf_child_limits(0, 0);
     ck_assert_uint_eq(limits.memory, gibibyte);
-    ck_assert_int_eq(limits.seconds, 10);
+    ck_assert_double_eq(limits.seconds, 10.0);
     limits = gltf_child_limits((uint64_t)8 << 20, 0);
     ck_assert_uint_eq(limits.memory, 2 * gibibyte);
-    ck_assert_int_eq(limits.seconds, 20);
+    ck_assert_double_eq(limits.seconds, 20.0);
     limits = gltf_child_limits(UINT64_MAX, 0);
     ck_assert_uint_eq(limits.memory, 4 * gibibyte);
     limits = gltf_child_limits(0, 100);
     ck_assert_uint_eq(limits.memory, 100);
-    ck_assert_int_eq(limits.seconds, 10);
+    ck_assert_double_eq(limits.seconds, 10.0);
     limits = gltf_child_limits(0, SIZE_MAX);
     ck_assert_uint_eq(limits.memory, SIZE_MAX / 2);
-    ck_assert_int_eq(limits.seconds, 10000);
+    ck_assert_double_eq(limits.seconds, 10000.0);
 }
 END_TEST
 
