@@ -19,6 +19,11 @@
 #define STBI_NO_STDIO
 #define STBI_NO_SIMD /* one code for all processors */
 #define STBI_FAILURE_USERMSG
+/* Zeroed: of a JPEG that lacks tables or scans stb reads what it has not written. What grows is a
+ * PNG's, and is not read before. */
+#define STBI_MALLOC(size)       calloc(1, size)
+#define STBI_REALLOC(old, size) realloc(old, size)
+#define STBI_FREE(old)          free(old)
 /* Declared and defined under different names, which a compiler warns of at the file's end. */
 #define stbi_set_unpremultiply_on_load_thread stbi__unpremultiply_on_load_thread
 #include <stb_image.h>
