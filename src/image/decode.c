@@ -29,6 +29,10 @@
 #include <stb_image.h>
 #pragma GCC diagnostic pop
 
+enum {
+    PALETTE_BYTES = 3 * 256
+};
+
 /* "PNG" or "JPEG" by the first bytes; NULL for anything else. */
 static const char *kind_of(const unsigned char *bytes, size_t count)
 {
@@ -90,6 +94,44 @@ static const char *jpeg_fault(const unsigned char *bytes, size_t count)
     return early;
 }
 
+/* Where a PNG's PLTE chunk begins, if it has colours stored as indices and fewer than the 256 that
+ * indices can name; 0 otherwise. Source: PNG (Third Edition), 5.3 and 11.2.2. */
+static size_t find_short_palette(const unsigned char *bytes, size_t count)
+{
+    if (count < 26 || bytes[25] != 3)
+        return 0;
+    for (size_t at = 8; count - at >= 12;) {
+        const unsigned char *chunk = bytes + at;
+        size_t length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 |
+                        (size_t)chunk[3];
+        if (length > count - at - 12)
+            return 0;
+        if (memcmp(chunk + 4, "PLTE", 4) == 0)
+            return length < PALETTE_BYTES && length % 3 == 0 ? at : 0;
+        at += 12 + length;
+    }
+    return 0;
+}
+
+/* The file with the palette that begins at `at` filled up with black, the colour of what has none:
+ * of such an index stb would take what is on the stack. It does not look at checksums. The caller
+ * frees *out. */
+static Result fill_palette(const unsigned char *bytes, size_t count, size_t at, const char *label,
+                           unsigned char **out, size_t *out_count)
+{
+    size_t length = (size_t)bytes[at + 2] << 8 | bytes[at + 3], behind = at + 8 + length;
+    unsigned char *filled = calloc(count + PALETTE_BYTES - length, 1);
+    if (!filled)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", label);
+    memcpy(filled, bytes, behind);
+    filled[at + 2] = PALETTE_BYTES >> 8;
+    filled[at + 3] = PALETTE_BYTES & 0xff;
+    memcpy(filled + at + 8 + PALETTE_BYTES, bytes + behind, count - behind);
+    *out = filled;
+    *out_count = count + PALETTE_BYTES - length;
+    return RESULT_OK;
+}
+
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
                    int *height)
 {
@@ -97,7 +139,7 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     int channels;
     if (!kind)
         return result_fail(RESULT_BAD_INPUT, "%s: expected PNG or JPEG data", label);
-    if (count > INT_MAX)
+    if (count > INT_MAX - PALETTE_BYTES)
         return result_fail(RESULT_BAD_INPUT, "%s: %zu bytes of %s, expected below 2^31", label,
                            count, kind);
     const char *fault = *kind == 'J' ? jpeg_fault(bytes, count) : NULL;
@@ -111,23 +153,36 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     return RESULT_OK;
 }
 
-Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out)
+/* Of a file whose header was found to be sound. */
+static Result load(const unsigned char *bytes, size_t count, const char *label, Image *out)
 {
     int width, height, channels;
-    *out = (Image){0};
-    Result result = decode_size(bytes, count, label, &width, &height);
-    if (result)
-        return result;
-    const char *kind = kind_of(bytes, count);
     bool wide = stbi_is_16_bit_from_memory(bytes, (int)count);
     void *pixels = wide ? (void *)stbi_load_16_from_memory(bytes, (int)count, &width, &height,
                                                            &channels, STBI_rgb_alpha)
                         : (void *)stbi_load_from_memory(bytes, (int)count, &width, &height,
                                                         &channels, STBI_rgb_alpha);
     if (!pixels)
-        return stb_failure(label, kind);
+        return stb_failure(label, kind_of(bytes, count));
     *out = (Image){width, height, wide ? FORMAT_RGBA16 : FORMAT_RGBA8, pixels};
     return RESULT_OK;
+}
+
+Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out)
+{
+    int width, height;
+    unsigned char *filled = NULL;
+    *out = (Image){0};
+    Result result = decode_size(bytes, count, label, &width, &height);
+    if (result)
+        return result;
+    size_t palette = *kind_of(bytes, count) == 'P' ? find_short_palette(bytes, count) : 0;
+    if (palette)
+        result = fill_palette(bytes, count, palette, label, &filled, &count);
+    if (result == RESULT_OK)
+        result = load(filled ? filled : bytes, count, label, out);
+    free(filled);
+    return result;
 }
 
 int decode_channels(const unsigned char *bytes, size_t count)

@@ -27,6 +27,10 @@ enum {
     RASTER_WAYS
 };
 
+enum {
+    RASTER_TRIANGLES = 64 /* more than these are not looked at, for the time they take */
+};
+
 static inline int16_t raster_take_signed(FuzzBytes *bytes)
 {
     return (int16_t)(uint16_t)fuzz_take(bytes, 2);
@@ -99,7 +103,7 @@ static inline void raster_triangle(FuzzBytes *bytes, const SoupWindow *window, i
 static inline void raster_meshes(FuzzBytes *bytes, const SoupWindow *window, RasterInput *out)
 {
     float before[9] = {0};
-    while (bytes->left) {
+    for (int i = 0; bytes->left && i < RASTER_TRIANGLES; i++) {
         unsigned code = (unsigned)fuzz_take(bytes, 1);
         uint32_t mesh = code / RASTER_WAYS % SOUP_MESHES, *count = &out->counts[mesh];
         float position[9];
