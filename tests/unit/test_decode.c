@@ -47,6 +47,17 @@ START_TEST(palettes)
 }
 END_TEST
 
+/* Black: not what memory had there. */
+START_TEST(index_behind_the_palette)
+{
+    SmallPng png = png_begin(3, 1, 8, PNG_PALETTE);
+    png_chunk(&png, "gAMA", (uint8_t[]){0, 0, 0x27, 0x10}, 4);
+    png_chunk(&png, "PLTE", (uint8_t[]){10, 20, 30, 40, 50, 60}, 6);
+    png_end(&png, (uint8_t[]){1, 2, 255}, 3, 1);
+    decodes(&png, FORMAT_RGBA8, (uint8_t[]){40, 50, 60, 255, 0, 0, 0, 255, 0, 0, 0, 255}, 12);
+}
+END_TEST
+
 START_TEST(sixteen_bits)
 {
     static const uint8_t rgb[] = {0x12, 0x34, 0, 1, 0xff, 0xff}, grey[] = {0x80, 0x01};
@@ -203,6 +214,7 @@ int main(void)
     tcase_add_checked_fixture(test, scratch_make, scratch_remove);
     tcase_add_test(test, channels);
     tcase_add_test(test, palettes);
+    tcase_add_test(test, index_behind_the_palette);
     tcase_add_test(test, sixteen_bits);
     tcase_add_test(test, gamma_is_ignored);
     tcase_add_test(test, encoded_pixels_come_back);
