@@ -1,6 +1,7 @@
 #include "image/decode.h"
 
 #include <limits.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,7 +31,10 @@
 #pragma GCC diagnostic pop
 
 enum {
-    PALETTE_BYTES = 3 * 256
+    PALETTE_BYTES = 3 * 256,
+    /* A JPEG stores a block of 8×8 samples in a bit at least, and a sample in each direction stands
+     * for 4 pixels at most. */
+    JPEG_PIXELS_A_BYTE = 8 * 32 * 32
 };
 
 /* "PNG" or "JPEG" by the first bytes; NULL for anything else. */
@@ -150,6 +154,10 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     if (*width < 1 || *height < 1 || *width > DECODE_MAX_PIXELS || *height > DECODE_MAX_PIXELS)
         return result_fail(RESULT_BAD_INPUT, "%s: %dx%d pixels, expected 1 to %d a side", label,
                            *width, *height, DECODE_MAX_PIXELS);
+    if (*kind == 'J' && (uint64_t)*width * (uint64_t)*height / JPEG_PIXELS_A_BYTE > count)
+        return result_fail(RESULT_BAD_INPUT,
+                           "%s: cannot decode the JPEG: %zu bytes of %dx%d pixels", label, count,
+                           *width, *height);
     return RESULT_OK;
 }
 
@@ -157,11 +165,18 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
 static Result load(const unsigned char *bytes, size_t count, const char *label, Image *out)
 {
     int width, height, channels;
+    /* stb keeps its latest reason, and does not always give one: this is none of a real file. */
+    stbi_info_from_memory((const unsigned char *)"", 0, &width, &height, &channels);
+    const char *before = stbi_failure_reason();
     bool wide = stbi_is_16_bit_from_memory(bytes, (int)count);
     void *pixels = wide ? (void *)stbi_load_16_from_memory(bytes, (int)count, &width, &height,
                                                            &channels, STBI_rgb_alpha)
                         : (void *)stbi_load_from_memory(bytes, (int)count, &width, &height,
                                                         &channels, STBI_rgb_alpha);
+    if (!pixels && stbi_failure_reason() == before)
+        return result_fail(RESULT_BAD_INPUT,
+                           "%s: cannot decode the %s: it is broken, or 2^31 bytes or more", label,
+                           kind_of(bytes, count));
     if (!pixels)
         return stb_failure(label, kind_of(bytes, count));
     *out = (Image){width, height, wide ? FORMAT_RGBA16 : FORMAT_RGBA8, pixels};

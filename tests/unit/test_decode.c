@@ -163,6 +163,11 @@ START_TEST(jpeg)
     for (size_t cut = 0; cut + 1 < count; cut++)
         refused(bytes, cut, "");
     refused(bytes, count - 2, "ends too early");
+    size_t at = 0;
+    while (memcmp(bytes + at, "\xff\xc0", 2) != 0) /* the frame's header: of that many pixels */
+        ck_assert_uint_lt(++at, count - 9);
+    memcpy(bytes + at + 5, "\x40\0\x40\0", 4);
+    refused(bytes, count, "bytes of 16384x16384 pixels");
 }
 END_TEST
 
