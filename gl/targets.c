@@ -43,7 +43,7 @@ Result targets_reserve(Targets *targets, size_t bytes)
     if (targets->bytes <= targets->limit)
         return RESULT_OK;
     return result_fail(RESULT_NO_MEMORY,
-                       "gl: %d×%d needs %zu KiB, the limit is %zu KiB (--max-memory)",
+                       "gl: %d×%d needs at least %zu KiB, the limit is %zu KiB (--max-memory)",
                        targets->width, targets->height, targets->bytes >> 10, targets->limit >> 10);
 }
 

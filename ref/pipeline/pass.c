@@ -106,7 +106,7 @@ Result pass_reserve(Pass *pass, uint64_t bytes)
     if (pass->bytes <= pass->limit)
         return RESULT_OK;
     return result_fail(RESULT_NO_MEMORY,
-                       "ref: %d×%d needs %llu KiB, the limit is %llu KiB "
+                       "ref: %d×%d needs at least %llu KiB, the limit is %llu KiB "
                        "(--max-memory)",
                        pass->view.width, pass->view.height, (unsigned long long)(pass->bytes >> 10),
                        (unsigned long long)(pass->limit >> 10));

@@ -27,8 +27,8 @@ Result soup_check_memory(size_t needed, size_t limit)
     if (needed <= limit)
         return RESULT_OK;
     return result_fail(RESULT_NO_MEMORY,
-                       "truth: needs %zu KiB, the limit is %zu KiB (--max-memory)", needed >> 10,
-                       limit >> 10);
+                       "truth: needs at least %zu KiB, the limit is %zu KiB (--max-memory)",
+                       needed >> 10, limit >> 10);
 }
 
 /* ---- draws ---------------------------------------------------------------------------------- */

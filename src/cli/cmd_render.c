@@ -185,10 +185,13 @@ static Result render(const RenderCommand *command, const Scene *scene, TraceStor
     progress_end();
     if (result != RESULT_OK)
         return result;
-    if (command->output)
-        result = options_has_extension(command->output, ".png")
-                     ? png_write(&out->display, command->output)
-                     : exr_write(&out->final, command->output);
+    bool png = command->output && options_has_extension(command->output, ".png");
+    if (png) {
+        image_free(&out->final); /* room for the file */
+        result = png_write(&out->display, command->output);
+    } else if (command->output) {
+        result = exr_write(&out->final, command->output);
+    }
     if (result == RESULT_OK && store)
         result = write_trace(store, command->trace);
     if (result != RESULT_OK)
@@ -216,9 +219,10 @@ static Result render_deep(const RenderCommand *command, const Scene *scene, Fram
 
 static void print_summary(const RenderCommand *command, const Frame *frame)
 {
-    printf("%s: %dx%d, %d peels, %.1f ms (cpu %.1f ms, %d threads)\n",
-           threeway_renderer_name(command->renderer), frame->final.width, frame->final.height,
-           frame->peels, frame->time_ms, frame->cpu_ms, frame->threads);
+    printf("%s: %dx%d, %d peels, %.1f ms (cpu %.1f ms, %d threads), %.1f MiB\n",
+           threeway_renderer_name(command->renderer), frame->display.width, frame->display.height,
+           frame->peels, frame->time_ms, frame->cpu_ms, frame->threads,
+           (double)frame->buffer_bytes / (1 << 20));
     if (frame->residual_pixels)
         printf("pass limit: transmittance up to %.6g remains in front of %llu fragments in "
                "%llu pixels\n",

@@ -23,6 +23,7 @@ typedef struct Document {
     const char *path;
     unsigned char *bytes;
     size_t count;
+    bool out_of_memory; /* a file could not be opened for want of it */
 } Document;
 
 static size_t file_read(struct aiFile *file, char *out, size_t size, size_t count)
@@ -81,35 +82,35 @@ static void close_file(struct aiFileIO *io, struct aiFile *file)
 }
 
 /* Assimp joins a buffer's uri to the document's folder without decoding it. */
-static bool read_buffer(const char *document, const char *joined, MemoryFile *out)
+static Result read_buffer(const char *document, const char *joined, MemoryFile *out)
 {
     const char *slash = strrchr(document, '/');
     size_t folder = slash ? (size_t)(slash - document) + 1 : 0;
     const char *uri = strncmp(joined, document, folder) == 0 ? joined + folder : joined;
     char *path = NULL;
-    bool read = gltf_file_beside(document, uri, &path) == RESULT_OK &&
-                file_load(path, &out->owned, &out->count) == RESULT_OK;
+    Result result = gltf_file_beside(document, uri, &path);
+    if (result == RESULT_OK)
+        result = file_load(path, &out->owned, &out->count);
     free(path);
     out->bytes = out->owned;
-    return read;
+    return result;
 }
 
 /* The reduced document under the file's own name; everything else is an external buffer. */
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
 {
-    const Document *document = (const Document *)io->UserData;
+    Document *document = (Document *)io->UserData;
     if (mode[0] != 'r')
         return NULL;
     struct aiFile *file = memory_array(1, sizeof *file);
     MemoryFile *memory = memory_array(1, sizeof *memory);
-    if (!file || !memory) {
-        free(file);
-        free(memory);
-        return NULL;
-    }
-    if (strcmp(path, document->path) == 0) {
+    Result result = file && memory ? RESULT_OK : RESULT_NO_MEMORY;
+    if (result == RESULT_OK && strcmp(path, document->path) == 0)
         *memory = (MemoryFile){.bytes = document->bytes, .count = document->count};
-    } else if (!read_buffer(document->path, path, memory)) {
+    else if (result == RESULT_OK)
+        result = read_buffer(document->path, path, memory);
+    if (result != RESULT_OK) {
+        document->out_of_memory |= result == RESULT_NO_MEMORY;
         free(file);
         free(memory);
         return NULL;
@@ -177,7 +178,9 @@ Result gltf_assimp_import(const char *path, const GltfJson *json, const struct a
     /* No log stream is attached: Assimp then logs nowhere. */
     struct aiFileIO io = {open_file, close_file, (aiUserData)&document};
     *out = aiImportFileEx(path, 0, &io);
-    if (!*out)
+    if (document.out_of_memory)
+        result = result_fail(RESULT_NO_MEMORY, "%s: out of memory to import it", path);
+    else if (!*out)
         result = assimp_failure(path);
     else if (!is_gltf2(*out) || !(*out)->mRootNode)
         result = result_fail(RESULT_BAD_INPUT, "%s: not read as glTF 2.0", path);

@@ -56,27 +56,11 @@ small='--size 8x8 --lights 2 --threads 1'
     sweep render tutorial $small -o a.png
     sweep render tutorial $small -o a.exr --threads 3
     sweep render tutorial $small -o a.png --trace t.exr --passes 2
-    sweep render tutorial $small -o a.exr --with gl
-    sweep render tutorial $small -o a.exr --with gl --gl egl
-    sweep render tutorial $small --trace t.exr --with gl --passes 1
     sweep render tutorial $small -o a.exr --with truth
     sweep render tutorial $small -o a.exr --with truth --trace t.exr
     sweep render tutorial $small -o a.exr --with truth --deep
-    sweep render ../chain.glb $small -o a.png --mutate passes-4
     sweep render ../textured.gltf $small -o a.png
-    for method in $("$peel" methods | sed -n 's/^\([a-z][-a-z]*\) .*/\1/p'); do
-        sweep render tutorial $small -o a.png --method $method --trace t.exr
-        sweep render tutorial $small -o a.exr --method $method --with gl
-    done
-    sweep compare tutorial $small --tolerance 1
-    sweep compare tutorial $small --tolerance 1 --json j.json --report out --classes c.png
-    sweep compare tutorial $small --tolerance 1 --profile seed --budget --bound --report out
-    sweep compare tutorial $small --tolerance 1 --method all --json j.json --report out
-    sweep bench tutorial $small --runs 1 --passes 1,2 --json j.json --report out
-    sweep bench tutorial $small --runs 1 --renderers gl --no-error
-    sweep check tutorial ../a.exr $small --lights 0 --json j.json --report out
-    sweep check tutorial ../a_trace.exr $small --lights 0 --report out
-    sweep diagnose tutorial ../b.png $small --lights 0 --json j.json --report out
+    sweep render ../chain.glb $small -o a.png --mutate passes-4
     sweep diagnose --list
     sweep diff ../a.png ../b.png -o heat.png --json j.json
     sweep diff ../a.exr ../b.exr -o d.exr -p -v
@@ -107,9 +91,25 @@ small='--size 8x8 --lights 2 --threads 1'
         sweep blend check ../sequences.$form
     done
     sweep blend check --list
-    sweep blend check --gl --format rgba8 --equation under --limit 20 --json j.json
     sweep hard --list
     sweep hard --export out
+    sweep render tutorial $small -o a.exr --with gl
+    sweep render tutorial $small -o a.exr --with gl --gl egl
+    sweep render tutorial $small --trace t.exr --with gl --passes 1
+    sweep blend check --gl --format rgba8 --equation under --limit 20 --json j.json
+    for method in $("$peel" methods | sed -n 's/^\([a-z][-a-z]*\) .*/\1/p'); do
+        sweep render tutorial $small -o a.png --method $method --trace t.exr
+        sweep render tutorial $small -o a.exr --method $method --with gl
+    done
+    sweep compare tutorial $small --tolerance 1
+    sweep compare tutorial $small --tolerance 1 --json j.json --report out --classes c.png
+    sweep compare tutorial $small --tolerance 1 --profile seed --budget --bound --report out
+    sweep compare tutorial $small --tolerance 1 --method all --json j.json --report out
+    sweep bench tutorial $small --runs 1 --passes 1,2 --json j.json --report out
+    sweep bench tutorial $small --runs 1 --renderers gl --no-error
+    sweep check tutorial ../a.exr $small --lights 0 --json j.json --report out
+    sweep check tutorial ../a_trace.exr $small --lights 0 --report out
+    sweep diagnose tutorial ../b.png $small --lights 0 --json j.json --report out
 }
 echo "$((ran - failed)) passed, $failed failed"
 [ $failed = 0 ]
