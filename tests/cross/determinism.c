@@ -299,16 +299,20 @@ static void run(const Options *options, const Row *row)
 /* ---- scenes -----------------------------------------------------------------------------------
  */
 
+/* A setting's own size, if it has one, but below the scene's. */
+static int least(int own, int scene)
+{
+    return own == 0 ? scene : own < scene ? own : scene - 1;
+}
+
 static void run_settings(const Options *options, Row row, int width, int height)
 {
     for (int i = 0; i < DETERMINISM_SETTINGS; i++) {
         const DeterminismSetting *setting = &determinism_settings[i];
         row.desc = setting->desc;
         row.desc.lights = LIGHTS;
-        if (!row.desc.width) {
-            row.desc.width = width;
-            row.desc.height = height;
-        }
+        row.desc.width = least(setting->desc.width, width);
+        row.desc.height = least(setting->desc.height, height);
         row.setting = setting->name;
         row.function = row_frame;
         row.desc.ref_path = REF_PATH_DEFINITION;
@@ -359,11 +363,18 @@ static void run_scene(const Options *options, const char *name, Result (*generat
     scene_free(&scene);
 }
 
-/* The sizes that the hard scenes are made for: a whole number of pixels where it matters, and small
- * where there are many layers. */
+/* The hard scenes are made for 96 pixels, or for fewer where there are many layers; with a thousand
+ * there is no time for more. */
 static int hard_size(const char *name)
 {
-    return strcmp(name, "layers_1000") == 0 ? 24 : strcmp(name, "layers_256") == 0 ? 48 : 96;
+    static const struct {
+        const char *name;
+        int size;
+    } smaller[] = {{"layers_64", 48}, {"layers_256", 24}, {"drift_8", 24}, {"layers_1000", 6}};
+    for (size_t i = 0; i < sizeof smaller / sizeof *smaller; i++)
+        if (strcmp(name, smaller[i].name) == 0)
+            return smaller[i].size;
+    return 96;
 }
 
 static void run_scenes(const Options *options)
@@ -373,7 +384,7 @@ static void run_scenes(const Options *options)
     const HardScene *hard = hard_scenes_table(&hard_count);
     progress_begin("scenes", builtin_count + hard_count);
     for (size_t i = 0; i < builtin_count; i++) {
-        run_scene(options, builtin[i].name, builtin[i].generate, 160, 90);
+        run_scene(options, builtin[i].name, builtin[i].generate, 128, 72);
         progress_step(i + 1);
     }
     for (size_t i = 0; i < hard_count; i++) {
