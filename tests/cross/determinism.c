@@ -456,6 +456,7 @@ int main(int count, char **arguments)
                         "[--simd NAME,...] [--list]\n");
         return 4;
     }
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* what took long is not lost */
     run_scenes(&options);
     return fflush(stdout) != 0 ? 4 : failures > 0;
 }
