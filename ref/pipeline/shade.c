@@ -41,7 +41,7 @@ void shade_skipping(const View *view, const ShadeForm *form, const Texel *texel,
 static void explain(const ShadeForm *form, const Surface *surface, const ViewLight *light,
                     ShadeTerm *out)
 {
-    Incidence incidence;
+    Incidence incidence = {0};
     Reflection reflection;
     float half_vector[3];
     shade_distance(surface, light, &incidence);

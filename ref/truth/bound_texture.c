@@ -52,6 +52,13 @@ static double texel(const Texture *texture, const Reach *x, const Reach *y, long
     return texture->texels[4 * (row * texture->width + column) + (size_t)channel];
 }
 
+/* fmax, which makes gcc 12.2 for aarch64 fail at -O3: "internal compiler error: in
+ * vect_transform_reduction". */
+static double larger(double a, double b)
+{
+    return b > a ? b : a;
+}
+
 /* The greatest difference of `value` to a nearest texel within reach. */
 static double nearest_error(const Texture *texture, const Reach *x, const Reach *y, int channel,
                             double value)
@@ -59,7 +66,7 @@ static double nearest_error(const Texture *texture, const Reach *x, const Reach 
     double greatest = 0.0;
     for (long j = y->low; j <= y->high; j++)
         for (long i = x->low; i <= x->high; i++)
-            greatest = fmax(greatest, fabs(texel(texture, x, y, i, j, channel) - value));
+            greatest = larger(greatest, fabs(texel(texture, x, y, i, j, channel) - value));
     return greatest;
 }
 
@@ -72,11 +79,11 @@ static double bilinear_error(const Texture *texture, const Reach *x, const Reach
     for (long j = y->low; j <= y->high + 1; j++)
         for (long i = x->low; i <= x->high + 1; i++) {
             double t = texel(texture, x, y, i, j, channel);
-            largest = fmax(largest, fabs(t));
+            largest = larger(largest, fabs(t));
             if (i <= x->high)
-                slope_x = fmax(slope_x, fabs(texel(texture, x, y, i + 1, j, channel) - t));
+                slope_x = larger(slope_x, fabs(texel(texture, x, y, i + 1, j, channel) - t));
             if (j <= y->high)
-                slope_y = fmax(slope_y, fabs(texel(texture, x, y, i, j + 1, channel) - t));
+                slope_y = larger(slope_y, fabs(texel(texture, x, y, i, j + 1, channel) - t));
         }
     return slope_x * x->error + slope_y * y->error + 16.0 * unit * largest + BOUNDED_TINY;
 }
