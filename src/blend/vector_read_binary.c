@@ -76,7 +76,8 @@ static Result read_head(VectorReader *reader, VectorHeader *header)
     if (result == RESULT_OK)
         result = vector_read_equation(reader, texts + 2 * VECTOR_NAME, &header->equation);
     if (result == RESULT_OK)
-        strcpy(header->arithmetic, texts + 2 * VECTOR_NAME + EQUATION_TEXT);
+        snprintf(header->arithmetic, sizeof header->arithmetic, "%s",
+                 texts + 2 * VECTOR_NAME + EQUATION_TEXT);
     return result;
 }
 

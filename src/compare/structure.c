@@ -142,7 +142,7 @@ static Result open_sides(const TraceStore *const stores[], int count, Sides *out
 
 static void visit_pixel(Sides *sides, int p, size_t pixel, StructureVisit visit, void *context)
 {
-    StructurePixel pixels[STRUCTURE_STORES_MAX];
+    StructurePixel pixels[STRUCTURE_STORES_MAX] = {0};
     for (int i = 0; i < sides->count; i++)
         pixels[i] = (StructurePixel){sides->layers[i].opaque_ids[p], sides->ids[i],
                                      gather(&sides->layers[i], p, sides->ids[i])};

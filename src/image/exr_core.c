@@ -115,7 +115,7 @@ Result exr_reader_open(const char *path, ExrReader *out)
     struct stat status;
     int error = 0;
     if (out->descriptor < 0 || fstat(out->descriptor, &status) != 0)
-        error = errno;
+        error = errno ? errno : EIO;
     else if (!S_ISREG(status.st_mode))
         error = S_ISDIR(status.st_mode) ? EISDIR : ESPIPE;
     if (error) {
