@@ -194,7 +194,8 @@ static StructureSame compare_sides(StructurePixel *a, StructurePixel *b, Structu
 {
     bool flip = a->opaque != b->opaque;
     out->opaque_flips += flip;
-    if (a->count != b->count || memcmp(a->ids, b->ids, (size_t)a->count * sizeof(uint32_t)) != 0) {
+    if (a->count != b->count ||
+        (a->count && memcmp(a->ids, b->ids, (size_t)a->count * sizeof(uint32_t)) != 0)) {
         a->count = structure_drop_repetitions(a->ids, a->count);
         b->count = structure_drop_repetitions(b->ids, b->count);
         count_differences(a->ids, a->count, b->ids, b->count, out);
