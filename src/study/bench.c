@@ -85,7 +85,7 @@ typedef struct Group {
     Image truths[BENCH_AXIS_MAX]; /* final, per format; one that an earlier format has is empty */
     int truth_of[BENCH_AXIS_MAX]; /* which of truths a format has */
     size_t first, total;          /* rows before, and of the plan, for progress */
-    const ChildWork *work;
+    ChildWork work;
     int pipe;
 } Group;
 
@@ -203,7 +203,7 @@ static Result put_rows(Cell *cell)
             continue;
         row->cpu_ms = bench_median(cell->cpu_ms[i], plan->runs, &row->spread);
         row->wall_ms = bench_median(cell->wall_ms[i], plan->runs, &row->wall_spread);
-        result = child_put(cell->group->pipe, cell->group->work, row);
+        result = child_put(cell->group->pipe, &cell->group->work, row);
     }
     return result;
 }
@@ -339,15 +339,14 @@ static Result run_threads(Group *group, BenchGroup take, void *context, BenchRep
     Result result = RESULT_OK;
     for (int t = 0; t < plan->thread_count && result == RESULT_OK; t++) {
         size_t first = out->count;
-        const ChildWork work = {.run = run_group,
-                                .context = group,
-                                .record_size = sizeof(BenchRow),
-                                .take = take_row,
-                                .take_context = out};
+        group->work = (ChildWork){.run = run_group,
+                                  .context = group,
+                                  .record_size = sizeof(BenchRow),
+                                  .take = take_row,
+                                  .take_context = out};
         group->threads = plan->threads[t];
         group->first = first;
-        group->work = &work;
-        result = child_run(&work);
+        result = child_run(&group->work);
         if (result == RESULT_OK)
             result = bench_mark_pareto(out->rows + first, out->count - first);
         if (result == RESULT_OK && take)
