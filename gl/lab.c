@@ -133,7 +133,7 @@ static Result fetch_depth(GlLab *lab, const Experiment *experiment, uint32_t *ou
         result = lab_target(FORMAT_NONE, 0, format, EXPERIMENT_WIDTH, EXPERIMENT_HEIGHT, &depth);
     if (result != RESULT_OK)
         return result;
-    uint32_t *words = (uint32_t *)lab->pixels;
+    uint32_t *words = (void *)lab->pixels; /* room for either */
     for (int i = 0; i < EXPERIMENT_TEXELS; i++) {
         uint32_t code = (uint32_t)experiment->a[i][0];
         words[i] = format == FORMAT_D24   ? code << 8 | code >> 16

@@ -40,7 +40,7 @@ static uint32_t far_code(PixelFormat format)
 static void read_fields(GlLab *lab, const Experiment *experiment, const LabTarget *target,
                         uint32_t *out)
 {
-    uint32_t *depth = (uint32_t *)lab->pixels;
+    uint32_t *depth = (void *)lab->pixels; /* room for either */
     memset(out, 0, experiment_values(experiment) * sizeof *out);
     lab_read_depth(target, depth);
     for (size_t i = 0; i < RASTER_PIXELS; i++)

@@ -79,7 +79,6 @@ static Result read_sums(Sums *sums, Frame *out)
 {
     const Passes *passes = sums->passes;
     const Targets *targets = &passes->targets;
-    const char *what[] = {"sum", sums->method.second};
     size_t pixels = (size_t)targets->width * (size_t)targets->height;
     Result result = RESULT_OK;
     for (int i = 0; i < (passes->trace ? sums->count : 1) && result == RESULT_OK; i++) {
@@ -89,7 +88,8 @@ static Result read_sums(Sums *sums, Frame *out)
         for (size_t k = 0; k < pixels && i == 0; k++)
             out->layers.overflowed += format_overflowed(format, (const char *)sums->pixels +
                                                                     k * format_pixel_bytes(format));
-        snprintf(name, sizeof name, "%s.%s", sums->method.name, what[i]);
+        snprintf(name, sizeof name, "%s.%s", sums->method.name,
+                 i == 0 ? "sum" : sums->method.second);
         result = trace_put(passes->trace, name, 1, format, targets->width, targets->height,
                            sums->pixels);
     }

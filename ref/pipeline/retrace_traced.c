@@ -152,9 +152,10 @@ static const PixelValue *stored_after(const PixelTrace *trace, const History *hi
 {
     const HistoryStep *step = &history->steps[index];
     const char *method = method_info(history->method)->name;
-    int peel;
+    const char *rest;
+    int peel = trace_peel_number(step->step, &rest);
     bool accum = strcmp(step->target, "accum") == 0;
-    if (sscanf(step->step, "peel.%d", &peel) == 1)
+    if (peel >= 0)
         return accum ? pixel_trace_numbered(trace, "peel", peel, "accum")
                      : pixel_trace_numbered(trace, method, peel, "back_accum");
     if (accum && is_last(history, index, false))

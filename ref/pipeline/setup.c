@@ -31,12 +31,12 @@ static int maximum(int a, int b)
     return a > b ? a : b;
 }
 
-PixelRect setup_bounds(const Vertex *const v[3], int width, int height)
+PixelRect setup_bounds(const Vertex *const corners[3], int width, int height)
 {
-    int x_low = minimum(minimum(v[0]->x_fixed8, v[1]->x_fixed8), v[2]->x_fixed8);
-    int y_low = minimum(minimum(v[0]->y_fixed8, v[1]->y_fixed8), v[2]->y_fixed8);
-    int x_high = maximum(maximum(v[0]->x_fixed8, v[1]->x_fixed8), v[2]->x_fixed8);
-    int y_high = maximum(maximum(v[0]->y_fixed8, v[1]->y_fixed8), v[2]->y_fixed8);
+    int x_low = minimum(minimum(corners[0]->x_fixed8, corners[1]->x_fixed8), corners[2]->x_fixed8);
+    int y_low = minimum(minimum(corners[0]->y_fixed8, corners[1]->y_fixed8), corners[2]->y_fixed8);
+    int x_high = maximum(maximum(corners[0]->x_fixed8, corners[1]->x_fixed8), corners[2]->x_fixed8);
+    int y_high = maximum(maximum(corners[0]->y_fixed8, corners[1]->y_fixed8), corners[2]->y_fixed8);
     /* The fill rule never gives a triangle the pixels on its greatest coordinate. */
     return (PixelRect){
         (int16_t)minimum(maximum(x_low >> 8, 0), width),

@@ -197,7 +197,7 @@ shade_reflection(bool back_light, const Surface *surface, const ViewLight *light
         lanes_mul(out->distribution, out->geometry),
         lanes_add(lanes_mul(surface->four_n_dot_v, n_dot_l), lanes_all(SHADING_SPECULAR_BIAS)));
     out->attenuation = lanes_div(one, in->falloff);
-    if (light->inverse_range2 > 0.0f)
+    if (light->inverse_range2 > 0.0f) /* as where the window was made; NOLINTNEXTLINE */
         out->attenuation = lanes_mul(out->attenuation, in->window);
     for (int i = 0; i < 3; i++) {
         Lanes lambert = surface->lambert[i];

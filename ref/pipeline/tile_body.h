@@ -332,7 +332,8 @@ static Result scratch_create(int tile_size, Scratch *out)
     out->memory = memory_array(1, scratch_layout(tile_size, NULL, out));
     if (!out->memory)
         return RESULT_NO_MEMORY;
-    scratch_layout(tile_size, out->memory + (64 - (uintptr_t)out->memory % 64), out);
+    scratch_layout(tile_size, (unsigned char *)out->memory + (64 - (uintptr_t)out->memory % 64),
+                   out);
     return RESULT_OK;
 }
 

@@ -112,7 +112,7 @@ static double round_even(double x)
 /* A coordinate in subpixels to an integer one in the viewport, whose side is size pixels. */
 static int64_t snap(double subpixel, int size)
 {
-    double low = -SUBPIXELS / 2, high = (double)size * SUBPIXELS - SUBPIXELS / 2;
+    double low = -SUBPIXELS / 2.0, high = (double)size * SUBPIXELS - SUBPIXELS / 2.0;
     subpixel = subpixel > low ? subpixel : low;
     subpixel = subpixel < high ? subpixel : high;
     return (int64_t)round_even(subpixel);

@@ -130,6 +130,7 @@ static int open_target(FileWriter *writer)
     if (stat(writer->path, &status) != 0) {
         if (errno != ENOENT || !*writer->path || !follow_dangling(writer))
             return -1;
+        /* NOLINTNEXTLINE(clang-analyzer-unix.Malloc): release() frees the path */
         return create_temporary(writer->path, &writer->temporary);
     }
     if (!S_ISREG(status.st_mode))
@@ -322,7 +323,7 @@ Result file_load(const char *path, unsigned char **bytes, size_t *count)
         free(*bytes);
         *bytes = NULL;
     }
-    fclose(file);
+    (void)fclose(file);
     return result;
 }
 
@@ -334,6 +335,6 @@ Result file_head(const char *path, void *bytes, size_t size, size_t *count)
     if (result != RESULT_OK)
         return result;
     *count = fread(bytes, 1, size, file);
-    fclose(file);
+    (void)fclose(file);
     return RESULT_OK;
 }

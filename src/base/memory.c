@@ -16,9 +16,9 @@ static void use_large_pages(void *array, size_t bytes)
 #ifdef MADV_HUGEPAGE
     if (bytes < LARGE_BYTES)
         return;
-    uintptr_t first = ((uintptr_t)array + PAGE_BYTES - 1) / PAGE_BYTES * PAGE_BYTES;
-    uintptr_t end = ((uintptr_t)array + bytes) / PAGE_BYTES * PAGE_BYTES;
-    madvise((void *)first, end - first, MADV_HUGEPAGE); /* a wish: failure changes nothing */
+    size_t before = (PAGE_BYTES - (uintptr_t)array % PAGE_BYTES) % PAGE_BYTES;
+    size_t whole = (bytes - before) / PAGE_BYTES * PAGE_BYTES;
+    madvise((char *)array + before, whole, MADV_HUGEPAGE); /* a wish: failure changes nothing */
 #else
     (void)array;
     (void)bytes;
@@ -28,7 +28,7 @@ static void use_large_pages(void *array, size_t bytes)
 void *memory_array(size_t count, size_t size)
 {
     bool fits = size == 0 || count <= (size_t)PTRDIFF_MAX / size;
-    void *array = fits ? calloc(count ? count : 1, size) : NULL;
+    void *array = fits ? calloc(count ? count : 1, size ? size : 1) : NULL;
     if (!array)
         result_fail(RESULT_NO_MEMORY, "out of memory: %zu elements of %zu bytes", count, size);
     else

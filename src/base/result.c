@@ -41,6 +41,7 @@ static void make_one_line(char *text)
             *c = '?';
 }
 
+#undef result_fail
 Result result_fail(Result code, const char *format, ...)
 {
     char text[sizeof message]; /* the arguments may hold the previous message */
@@ -49,7 +50,7 @@ Result result_fail(Result code, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     make_one_line(text);
-    strcpy(message, text);
+    memcpy(message, text, sizeof message);
     return code;
 }
 

@@ -109,6 +109,7 @@ static void blend_plain(const Arithmetic *arithmetic, const BlendEquation *equat
     BlendSteps steps[4];
     arithmetic_steps(arithmetic, equation, format, source, pixel, steps);
     for (int i = 0; i < format_info(format)->channels; i++)
+        /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): these were set */
         arithmetic_put(format, pixel, i, steps[i].stored);
 }
 

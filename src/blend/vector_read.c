@@ -13,6 +13,7 @@
 
 /* ---- messages -------------------------------------------------------------------------------- */
 
+#undef vector_read_fail
 Result vector_read_fail(const VectorReader *reader, const char *format, ...)
 {
     char text[320];
@@ -32,9 +33,11 @@ const char *vector_read_quote(const char *text, char out[VECTOR_QUOTE])
     size_t length = strnlen(text, VECTOR_QUOTE);
     bool cut = length >= VECTOR_QUOTE - 1;
     length = cut ? VECTOR_QUOTE - 4 : length;
+    memcpy(out, text, length);
     for (size_t i = 0; i < length; i++)
-        out[i] = text[i] >= ' ' && text[i] <= '~' ? text[i] : '?';
-    strcpy(out + length, cut ? "..." : "");
+        if (out[i] < ' ' || out[i] > '~')
+            out[i] = '?';
+    memcpy(out + length, cut ? "..." : "", cut ? 4 : 1);
     return out;
 }
 
@@ -316,7 +319,7 @@ void vector_reader_close(VectorReader *reader)
     if (reader->digest)
         vector_digest_finish(reader->digest, checksum);
     if (reader->stream && reader->stream != stdin)
-        fclose(reader->stream);
+        (void)fclose(reader->stream);
     free(reader->path);
     free(reader->buffer);
     free(reader->line);

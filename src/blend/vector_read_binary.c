@@ -119,7 +119,7 @@ static Result read_results(VectorReader *reader, int layers, const char *expecte
     Result result = RESULT_OK;
     for (int i = 0; i < layers && result == RESULT_OK; i++) {
         unsigned char bytes[VECTOR_PIXEL_MAX];
-        uint32_t bits[4];
+        uint32_t bits[4] = {0};
         out->given[i] = !reader->last_only || i + 1 == layers;
         if (!out->given[i])
             continue;

@@ -139,7 +139,8 @@ static Result check_columns(const VectorReader *reader, const VectorHeader *head
             at = stpcpy(at, fields[i]);
         }
     }
-    for (int full = 0; full <= (header->spec.set == VECTORS_SEQUENCES); full++) {
+    int forms = header->spec.set == VECTORS_SEQUENCES ? 2 : 1;
+    for (int full = 0; full < forms; full++) {
         columns(header, full, expected);
         if (strcmp(text, expected) == 0)
             return RESULT_OK;
@@ -255,7 +256,7 @@ static Result take_layer(VectorReader *reader, char *const fields[], int layer, 
     out->given[layer] = !empty;
     if (result != RESULT_OK || (empty && layer + 1 < layers))
         return result;
-    uint32_t bits[4];
+    uint32_t bits[4] = {0};
     result = take_pixel(reader, "result", fields + 7, bits);
     for (int c = 0; c < 4 && result == RESULT_OK; c++)
         format_set_bits(format, out->results + (size_t)layer * format_pixel_bytes(format), c,

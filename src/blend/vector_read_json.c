@@ -4,8 +4,10 @@
 #include "blend/vector_parts.h"
 #include "number/op.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <jansson.h>
+#include <math.h>
 #include <string.h>
 
 /* The next line as an object, which the caller gives back. */
@@ -110,7 +112,7 @@ static Result take_float(const VectorReader *reader, const json_t *value, const 
     if (text)
         return vector_read_source(reader, name, text, out);
     double number = json_number_value(value);
-    *out = number >= -0x1.fffffep127 && number <= 0x1.fffffep127 ? (float)number : 0.0f;
+    *out = fabs(number) <= (double)FLT_MAX ? (float)number : 0.0f;
     if (!json_is_number(value) || (double)*out != number)
         return vector_read_fail(
             reader, "%s is no float: expected a text with a hexadecimal one, as \"0x1.8p-1\"",

@@ -31,11 +31,14 @@ static void write_binary_head(VectorWriter *writer)
     at = put_integer(header->spec.seed, 8, at);
     at = put_integer(header->first, 8, at);
     at = put_integer(header->count, 8, at);
-    strcpy((char *)at, vectors_set_name(header->spec.set));
-    strcpy((char *)at + VECTOR_NAME, format_info(header->spec.format)->name);
+    char *text = (char *)at;
+    snprintf(text, VECTOR_NAME, "%s", vectors_set_name(header->spec.set));
+    text += VECTOR_NAME;
+    snprintf(text, VECTOR_NAME, "%s", format_info(header->spec.format)->name);
     equation_print(&header->equation, equation);
-    strcpy((char *)at + 2 * VECTOR_NAME, equation);
-    strcpy((char *)at + 2 * VECTOR_NAME + EQUATION_TEXT, header->arithmetic);
+    text += VECTOR_NAME;
+    snprintf(text, EQUATION_TEXT, "%s", equation);
+    snprintf(text + EQUATION_TEXT, sizeof header->arithmetic, "%s", header->arithmetic);
     vector_write_bytes(writer, head, sizeof head);
 }
 

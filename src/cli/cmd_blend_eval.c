@@ -1,18 +1,18 @@
 /* peel blend eval: a calculator of blends. */
 #include "cli/bind.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 #include "report/blend_eval.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 enum {
     ARITHMETICS_MOST = 128,
-    BRIEF_FROM = 17 /* layers: more than that and nobody reads every step */
+    WIDTH_LEAST = 40, /* columns */
+    BRIEF_FROM = 17   /* layers: more than that and nobody reads every step */
 };
 
 typedef struct EvalCommand {
@@ -155,7 +155,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         command->full = key == KEY_FULL;
         return 0;
     case KEY_WIDTH:
-        return options_count("--width", argument, 40, 1000, &command->width);
+        return options_count("--width", argument, WIDTH_LEAST, 1000, &command->width);
     case KEY_JSON:
         command->json = argument;
         return 0;
@@ -264,28 +264,14 @@ static Result choose_arithmetics(EvalCommand *command)
     return RESULT_OK;
 }
 
-static int columns(void)
-{
-    struct winsize size;
-    if (isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-        return size.ws_col < 40 ? 40 : size.ws_col;
-    return 100;
-}
-
-static bool wants_colour(void)
-{
-    const char *terminal = getenv("TERM"), *none = getenv("NO_COLOR");
-    return isatty(STDOUT_FILENO) && !(none && *none) && terminal && strcmp(terminal, "dumb") != 0;
-}
-
 static Result evaluate(EvalCommand *command, BlendColour *start)
 {
     EvalDesc desc = {.equation = command->equation,
                      .format = command->format,
                      .layers = &command->layers,
                      .start = command->start ? start : NULL};
-    EvalView view = {.width = command->width ? command->width : columns(),
-                     .colour = wants_colour()};
+    EvalView view = {.width = command->width ? command->width : terminal_columns(WIDTH_LEAST),
+                     .colour = terminal_has_colour()};
     Result result = options_check_output(command->json);
     if (result == RESULT_OK)
         result = choose_colours(command, &desc.multiply);

@@ -4,6 +4,7 @@
 #include "base/progress.h"
 #include "cli/bind.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 #include "ref/pipeline/retrace.h"
 #include "ref/truth/pixel_truth.h"
 #include "report/history.h"
@@ -11,8 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 typedef struct PixelCommand {
     RenderOptions render;
@@ -37,8 +36,7 @@ enum {
     KEY_PIXEL = 0x200,
     KEY_JSON,
     KEY_RENDERERS,
-    NARROWEST = 80,
-    UNKNOWN = 100 /* columns, where nobody says */
+    NARROWEST = 80 /* columns */
 };
 
 static const struct argp_option command_options[] = {
@@ -53,8 +51,8 @@ static const struct argp_option command_options[] = {
 
 static error_t parse_pixel(const char *text, PixelCommand *command)
 {
-    int x, y, end = 0;
-    if (sscanf(text, "%d,%d%n", &x, &y, &end) != 2 || text[end] != '\0' || end > 24)
+    int x, y;
+    if (!options_pair(text, ',', 0, &x, &y))
         return options_error("--pixel %s: expected X,Y, counted from the top left", text);
     void *array = command->pixels;
     Result result = memory_grow(&array, &command->pixel_room, command->pixel_count + 1,
@@ -170,26 +168,6 @@ static void end(Work *work)
 
 /* ---- output ---- */
 
-/* -1: no terminal, and nobody says. */
-static int terminal_columns(void)
-{
-    struct winsize size;
-    const char *text = getenv("COLUMNS");
-    long long columns;
-    if (text && options_integer(text, 1, 10000, &columns))
-        return (int)columns;
-    return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : UNKNOWN;
-}
-
-static HistoryStyle style_here(void)
-{
-    const char *none = getenv("NO_COLOR"), *terminal = getenv("TERM");
-    int columns = terminal_columns();
-    return (HistoryStyle){.columns = columns > NARROWEST ? columns : NARROWEST,
-                          .color = isatty(STDOUT_FILENO) && !(none && *none) &&
-                                   !(terminal && strcmp(terminal, "dumb") == 0)};
-}
-
 static void put_json(const Work *work, const History histories[RENDERER_COUNT], Text *out)
 {
     bool first = true;
@@ -207,7 +185,7 @@ static void put_json(const Work *work, const History histories[RENDERER_COUNT], 
     text_print(out, "}");
 }
 
-static void print(const Work *work, const History histories[RENDERER_COUNT])
+static Result print(const Work *work, const History histories[RENDERER_COUNT])
 {
     const History *sides[RENDERER_COUNT];
     for (int i = 0; i < RENDERER_COUNT; i++)
@@ -220,7 +198,8 @@ static void print(const Work *work, const History histories[RENDERER_COUNT])
                               .gl = sides[RENDERER_GL],
                               .truth = sides[RENDERER_TRUTH],
                               .missing = work->missing[0] ? work->missing : NULL};
-    report_history(&all, style_here(), stdout);
+    const HistoryStyle style = {terminal_columns(NARROWEST), terminal_has_colour()};
+    return report_history(&all, style, stdout);
 }
 
 /* json: NULL to print. */
@@ -238,7 +217,7 @@ static Result tell(Work *work, const PixelTrace *pixel, Text *json)
     if (result == RESULT_OK && json)
         put_json(work, histories, json);
     else if (result == RESULT_OK)
-        print(work, histories);
+        result = print(work, histories);
     for (int i = 0; i < RENDERER_COUNT; i++)
         history_free(&histories[i]);
     return result;

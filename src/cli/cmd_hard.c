@@ -147,7 +147,7 @@ static char *command_line(const HardCommand *command, bool all)
             command->report ? command->report : "out");
     for (size_t i = 0; i < command->count && !all; i++)
         fprintf(out, " %s", command->cases[i]->name);
-    fclose(out);
+    (void)fclose(out);
     return text;
 }
 

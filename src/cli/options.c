@@ -168,7 +168,7 @@ char *options_command_line(int argc, char **argv)
             *c == '\'' ? (void)fputs("'\\''", out) : (void)fputc(*c, out);
         fputc('\'', out);
     }
-    fclose(out);
+    (void)fclose(out);
     return text;
 }
 
@@ -280,12 +280,11 @@ Result options_check_output(const char *path)
     if (!copy)
         return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
     bool exists = stat(path, &status) == 0;
-    errno = 0;
+    int error = 0;
     if (exists && S_ISDIR(status.st_mode))
-        errno = EISDIR;
-    else
-        access(exists ? path : dirname(copy), W_OK);
-    int error = errno;
+        error = EISDIR;
+    else if (access(exists ? path : dirname(copy), W_OK) != 0)
+        error = errno;
     free(copy);
     return error ? result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error))
                  : RESULT_OK;

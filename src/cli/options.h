@@ -67,16 +67,19 @@ error_t options_error(const char *format, ...) __attribute__((format(printf, 1, 
 bool options_integer(const char *text, long long low, long long high, long long *out);
 bool options_real(const char *text, double low, double high, double *out);
 
+/* "AxB", "A,B", ...: two whole numbers from low to SIZE_MAX_PIXELS; false otherwise. */
+bool options_pair(const char *text, char between, int low, int *first, int *second);
+
 /* Values of options that several commands have; 0, or the error of options_error. --gl chooses for
  * the process. */
 #define OPTIONS_BLEND_FORMATS "rgba8|rgba16|rgba16f|rgba32f|rg32f|r32f"
 #define OPTIONS_GL_NAMES      "osmesa|egl"
 #define OPTIONS_GL_HELP       "Where OpenGL comes from: osmesa (default) or egl"
 error_t options_gl(const char *text);
-error_t options_size(const char *text, RenderDesc *out);
-error_t options_lights(const char *text, RenderDesc *out);
-error_t options_method(const char *text, RenderDesc *out);
-error_t options_passes(const char *text, RenderDesc *out);
+error_t options_size(const char *text, RenderDesc *desc);
+error_t options_lights(const char *text, RenderDesc *desc);
+error_t options_method(const char *text, RenderDesc *desc);
+error_t options_passes(const char *text, RenderDesc *desc);
 error_t options_fma(const char *text, FmaChoice *out);
 /* Whether text is a value of --depth, which it then sets: for a command whose --depth takes files,
  * too. */

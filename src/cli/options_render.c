@@ -10,29 +10,39 @@
 #include <stdlib.h>
 #include <string.h>
 
-error_t options_size(const char *text, RenderDesc *desc)
+bool options_pair(const char *text, char between, int low, int *first, int *second)
 {
     char *end;
-    bool digits = strspn(text, "0123456789x") == strlen(text);
-    long width = strtol(text, &end, 10);
-    long height = *end == 'x' ? strtol(end + 1, &end, 10) : 0;
-    if (!digits || *end || width < 1 || height < 1 || width > SIZE_MAX_PIXELS ||
-        height > SIZE_MAX_PIXELS)
+    const char digits[] = {'0', '1', '2', '3', '4', '5', '6', '7', '8', '9', between, '\0'};
+    long a = strtol(text, &end, 10);
+    bool whole = strspn(text, digits) == strlen(text) && end > text && *end == between;
+    long b = whole ? strtol(end + 1, &end, 10) : low;
+    if (!whole || end[-1] == between || *end || a < low || b < low || a > SIZE_MAX_PIXELS ||
+        b > SIZE_MAX_PIXELS)
+        return false;
+    *first = (int)a;
+    *second = (int)b;
+    return true;
+}
+
+error_t options_size(const char *text, RenderDesc *desc)
+{
+    if (!options_pair(text, 'x', 1, &desc->width, &desc->height))
         return options_error("--size %s: expected WxH, each from 1 to %d", text, SIZE_MAX_PIXELS);
-    desc->width = (int)width;
-    desc->height = (int)height;
     return 0;
 }
 
 static error_t parse_background(const char *text, RenderOptions *options)
 {
-    int length = 0;
-    double *c = options->background;
-    if (sscanf(text, "%lf,%lf,%lf%n", &c[0], &c[1], &c[2], &length) != 3 || text[length])
-        return options_error("--background %s: expected R,G,B, linear, from 0 to 1e6", text);
-    for (int i = 0; i < 3; i++)
-        if (!(c[i] >= 0.0 && c[i] <= 1e6))
+    const char *at = text;
+    for (int i = 0; i < 3; i++) {
+        char *end;
+        double value = strtod(at, &end);
+        if (end == at || *end != (i < 2 ? ',' : '\0') || !(value >= 0.0 && value <= 1e6))
             return options_error("--background %s: expected R,G,B, linear, from 0 to 1e6", text);
+        options->background[i] = value;
+        at = end + 1;
+    }
     options->has_background = true;
     return 0;
 }

@@ -4,6 +4,7 @@
 #include "compare/diff_fold.h"
 #include "compare/perceive.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,6 +63,7 @@ static void add_pair(Pairs *pairs, const Plane *a, const Plane *b)
 {
     const Plane *sides[DIFF_SIDES] = {a, b};
     FoldChannel *channel = &pairs->channels[pairs->count];
+    assert(a || b);
     channel->name = a ? a->name : b->name;
     for (int side = 0; side < DIFF_SIDES; side++) {
         const Plane *stored = sides[side] ? sides[side] : sides[!side];

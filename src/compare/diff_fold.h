@@ -35,7 +35,7 @@ Result fold_begin(const DiffOptions *options, const FoldChannel *channels, int c
 
 /* For each pixel in reading order: begin, its values (sample: of a deep pixel), end. */
 void fold_pixel(Fold *fold, int x, int y);
-void fold_value(Fold *fold, int channel, uint32_t sample, uint32_t a, uint32_t b);
+void fold_value(Fold *fold, int index, uint32_t sample, uint32_t a_bits, uint32_t b_bits);
 void fold_break(Fold *fold); /* the pixel cannot be compared: it fails */
 void fold_pixel_end(Fold *fold);
 

@@ -165,7 +165,7 @@ static Eye make_eye(int width, int height)
         eye.cycles[i] = 0.5 * eye.cycles[i - 1];
     for (int i = 0; i < LEVELS; i++)
         eye.frequency[i] = most / sensitivity(eye.cycles[i], 100.0);
-    for (double pixels = 1.0; pixels <= degrees && eye.adapted < LEVELS - 1; pixels *= 2.0)
+    while (eye.adapted < LEVELS - 1 && ldexp(1.0, eye.adapted) <= degrees)
         eye.adapted++;
     return eye;
 }

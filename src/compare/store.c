@@ -76,11 +76,12 @@ static uint64_t hash_bytes(const unsigned char *bytes, size_t size)
 /* "peel.7.accum" → entry of "peel.6.accum". */
 static int find_previous(const TraceStore *store, const char *name)
 {
-    int peel, length = 0;
-    if (sscanf(name, "peel.%d.%n", &peel, &length) != 1 || length == 0 || peel == 0)
+    const char *rest;
+    int peel = trace_peel_number(name, &rest);
+    if (peel < 1)
         return -1;
     char previous[64];
-    snprintf(previous, sizeof previous, "peel.%d.%s", peel - 1, name + length);
+    snprintf(previous, sizeof previous, "peel.%d%s", peel - 1, rest);
     return store_find(store, previous);
 }
 
@@ -269,7 +270,7 @@ void store_destroy(TraceStore *store)
     for (size_t i = 0; i < store->count; i++)
         free(store->entries[i].tiles);
     if (store->file)
-        fclose(store->file);
+        (void)fclose(store->file);
     free(store->blocks);
     free(store->entries);
     free(store);

@@ -142,7 +142,7 @@ static Result open_sides(const TraceStore *const stores[], int count, Sides *out
 
 static void visit_pixel(Sides *sides, int p, size_t pixel, StructureVisit visit, void *context)
 {
-    StructurePixel pixels[STRUCTURE_STORES_MAX];
+    StructurePixel pixels[STRUCTURE_STORES_MAX] = {0};
     for (int i = 0; i < sides->count; i++)
         pixels[i] = (StructurePixel){sides->layers[i].opaque_ids[p], sides->ids[i],
                                      gather(&sides->layers[i], p, sides->ids[i])};
@@ -194,7 +194,8 @@ static StructureSame compare_sides(StructurePixel *a, StructurePixel *b, Structu
 {
     bool flip = a->opaque != b->opaque;
     out->opaque_flips += flip;
-    if (a->count != b->count || memcmp(a->ids, b->ids, (size_t)a->count * sizeof(uint32_t)) != 0) {
+    if (a->count != b->count ||
+        (a->count && memcmp(a->ids, b->ids, (size_t)a->count * sizeof(uint32_t)) != 0)) {
         a->count = structure_drop_repetitions(a->ids, a->count);
         b->count = structure_drop_repetitions(b->ids, b->count);
         count_differences(a->ids, a->count, b->ids, b->count, out);

@@ -16,11 +16,9 @@ static bool begins(const char *text, const char *with)
 
 int trace_name_peel(const char *name)
 {
-    if (!begins(name, "peel.") || name[5] < '0' || name[5] > '9')
-        return -1;
-    char *end;
-    long peel = strtol(name + 5, &end, 10);
-    return *end == '.' && peel < PASSES_MAX ? (int)peel : -1;
+    const char *rest;
+    int peel = trace_peel_number(name, &rest);
+    return peel >= 0 && *rest == '.' ? peel : -1;
 }
 
 int trace_name_step(const char *name)

@@ -74,11 +74,12 @@ void setting_put(RenderDesc *desc, SettingId id, int choice)
     }
 }
 
-static int place(PixelFormat format, const PixelFormat *formats)
+/* Which of count formats; the first where it is none of them. */
+static int place(PixelFormat format, const PixelFormat *formats, int count)
 {
-    int i = 0;
-    while (formats[i] != format)
-        i++;
+    int i = count - 1;
+    while (i > 0 && formats[i] != format)
+        i--;
     return i;
 }
 
@@ -91,9 +92,9 @@ int setting_get(const RenderDesc *desc, SettingId id)
         FIELDS(GET)
 #undef GET
     case SETTING_DEPTH:
-        return place(render_desc_depth(desc), depths);
+        return place(render_desc_depth(desc), depths, sizeof depths / sizeof *depths);
     case SETTING_ACCUM:
-        return place(desc->accum, accums);
+        return place(desc->accum, accums, sizeof accums / sizeof *accums);
     case SETTING_COUNT:
         break;
     }

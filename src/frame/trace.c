@@ -1,6 +1,10 @@
 #include "frame/trace.h"
 
+#include "frame/render_desc.h"
+
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 Result trace_put(TraceSink *sink, const char *name, int step, PixelFormat format, int width,
                  int height, const void *pixels)
@@ -27,4 +31,14 @@ Result trace_put_peel(TraceSink *sink, int peel, const char *what, PixelFormat f
     char name[48];
     snprintf(name, sizeof name, "peel.%d.%s", peel, what);
     return trace_put(sink, name, peel + 1, format, width, height, pixels);
+}
+
+int trace_peel_number(const char *name, const char **rest)
+{
+    if (strncmp(name, "peel.", 5) != 0 || name[5] < '0' || name[5] > '9')
+        return -1;
+    char *end;
+    long peel = strtol(name + 5, &end, 10);
+    *rest = end;
+    return peel < PASSES_MAX ? (int)peel : -1;
 }

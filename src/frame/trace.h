@@ -61,4 +61,7 @@ Result trace_put(TraceSink *sink, const char *name, int step, PixelFormat format
 Result trace_put_peel(TraceSink *sink, int peel, const char *what, PixelFormat format, int width,
                       int height, const void *pixels);
 
+/* K of a name "peel.K", from 0 to PASSES_MAX - 1, and in *rest what follows it; -1 of others. */
+int trace_peel_number(const char *name, const char **rest);
+
 #endif

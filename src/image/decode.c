@@ -32,8 +32,10 @@ static void *decode_grow(void *memory, size_t size)
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wundef"
 #pragma GCC diagnostic ignored "-Wunused-function"
+#ifndef __clang_analyzer__ /* to which stb's own code is only declared */
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
+#endif
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_NO_GIF

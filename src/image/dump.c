@@ -31,6 +31,7 @@ static Result parse(const char *path, int number, const char *line, Header *out)
     } one = {1};
     char format[16], rows[8], order[8];
     int length = 0;
+    /* NOLINTNEXTLINE(cert-err34-c): five digits fit */
     int fields = sscanf(line, "peel-dump 1 %47s %15s %5dx%5d %7s %7s\n%n", out->name, format,
                         &out->width, &out->height, rows, order, &length);
     if (fields != 6 || line[length])
@@ -104,7 +105,7 @@ Result dump_read(const char *path, DumpTake take, void *context)
         image_free(&image);
         number++;
     }
-    fclose(file);
+    (void)fclose(file);
     if (result == RESULT_OK && number == 0)
         result = result_fail(RESULT_BAD_INPUT, "%s: empty, expected buffers", path);
     return result;

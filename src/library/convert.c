@@ -50,6 +50,7 @@ PeelResult convert_color_format(const char *function, PeelFormat format, PixelFo
                                       function, (int)format));
 }
 
+#undef convert_missing
 PeelResult convert_missing(const char *function, const char *argument)
 {
     return convert_result(

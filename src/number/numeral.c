@@ -180,7 +180,7 @@ static bool take_real(Reader *reader, mpq_t out)
 /* A real, or 2^N. */
 static bool take_term(Reader *reader, mpq_t out)
 {
-    long power;
+    long power = 0;
     if (!take_real(reader, out))
         return false;
     if (!take(reader, '^'))

@@ -207,7 +207,7 @@ double rational_round(const Rational *a, int bits, int lowest, int highest)
         return a->negative ? -0.0 : 0.0;
     long unit = unit_of(a->value, bits, lowest);
     if (unit + bits - 1 > highest)
-        return sign_of * INFINITY;
+        return sign_of < 0 ? -INFINITY : INFINITY;
     double rounded = ldexp(whole_units(a->value, unit), (int)unit);
     if (rounded >= ldexp(1.0, highest) * 2.0) /* 2^1024 is infinity, as it should be */
         rounded = INFINITY;

@@ -120,7 +120,7 @@ static Result print_steps(const BlendPage *page, bool *fits)
     size_t opened = 0;
     Result result = RESULT_OK;
     *fits = page->count <= SIDE_MOST;
-    if (!*fits)
+    if (!*fits || page->count == 0)
         return RESULT_OK;
     for (; opened < page->count && result == RESULT_OK; opened += result == RESULT_OK) {
         strcat(align, "lr");

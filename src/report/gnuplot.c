@@ -20,7 +20,7 @@ static void close_all(FILE *const streams[STREAMS])
 {
     for (int i = 0; i < STREAMS; i++)
         if (streams[i])
-            fclose(streams[i]);
+            (void)fclose(streams[i]);
 }
 
 /* Files without names, of the script, the drawing and complaints. */
@@ -71,8 +71,7 @@ static bool is_whole(const char *svg, size_t size)
 
 static Result copy(FILE *drawing, const char *path)
 {
-    fseek(drawing, 0, SEEK_END);
-    long size = ftell(drawing);
+    long size = fseek(drawing, 0, SEEK_END) == 0 ? ftell(drawing) : 0;
     rewind(drawing);
     if (size <= 0)
         return result_fail(RESULT_INTERNAL, "gnuplot: drew nothing for %s", path);

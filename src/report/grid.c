@@ -82,13 +82,15 @@ static void put(Grid *grid, GridStyle style, const char *format, va_list argumen
     va_copy(again, arguments);
     size_t size = (size_t)vsnprintf(NULL, 0, format, again) + 1;
     va_end(again);
-    char *text = malloc(size);
-    if (!text) {
+    GridCell *cell = &row->cells[row->count];
+    cell->style = style;
+    cell->text = malloc(size);
+    if (!cell->text) {
         grid->failed = true;
         return;
     }
-    vsnprintf(text, size, format, arguments);
-    row->cells[row->count++] = (GridCell){text, style};
+    vsnprintf(cell->text, size, format, arguments);
+    row->count++;
 }
 
 void grid_put(Grid *grid, GridStyle style, const char *format, ...)

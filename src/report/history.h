@@ -20,6 +20,7 @@ typedef struct HistoryStyle {
     bool color;
 } HistoryStyle;
 
-void report_history(const HistorySides *sides, HistoryStyle style, FILE *out);
+/* Failures: memory. */
+Result report_history(const HistorySides *sides, HistoryStyle style, FILE *out);
 
 #endif

@@ -162,7 +162,7 @@ static bool is_stale(const Threeway *report, const char *name)
 {
     PeelPicture peel = {0};
     char accum[PICTURES_NAME], added[PICTURES_NAME];
-    if (sscanf(name, "peel-%9d-", &peel.peel) != 1)
+    if (sscanf(name, "peel-%9d-", &peel.peel) != 1) /* NOLINT(cert-err34-c): nine digits fit */
         return false;
     if (strcmp(name, pictures_accum(&peel, accum)) != 0 &&
         strcmp(name, pictures_added(&peel, added)) != 0)

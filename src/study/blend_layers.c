@@ -219,7 +219,7 @@ Result blend_layers_load(const char *path, BlendLayers *layers)
     size_t before = layers->count;
     Result result = load_lines(standard ? "standard input" : path, in, layers);
     if (!standard)
-        fclose(in);
+        (void)fclose(in);
     if (result == RESULT_OK && layers->count == before)
         result = result_fail(RESULT_BAD_INPUT, "%s: no layers: expected a line r,g,b,a for each",
                              standard ? "standard input" : path);

@@ -1,6 +1,6 @@
 /* Buffers as pictures: {width, height, rgba, legend, describe(x, y)}. legend: text; describe: what
- * is stored at a pixel, as a list of [label, stored, format, channel name]. Pixels that hold nothing
- * are left transparent: the page shows a hatching there. */
+ * is stored at a pixel, as a list of [label, stored, format, channel name]. Pixels that hold
+ * nothing are left transparent: the page shows a hatching there. */
 "use strict";
 
 const draw = {};
@@ -68,8 +68,8 @@ draw.what = (buffer, channel) => buffer.channels === 1 ? buffer.name
 /* What a texel fetch would give of a channel. */
 draw.value = (buffer, at) => {
     const stored = buffer.data[at];
-    return buffer.format === "rgba32f" || buffer.format === "d32f" ? stored
-                                                                   : app.stored(stored, buffer.format);
+    const isFloat = buffer.format === "rgba32f" || buffer.format === "d32f";
+    return isFloat ? stored : app.stored(stored, buffer.format);
 };
 
 /* Whether the pass that made the buffer drew nothing at pixel i. */
@@ -118,7 +118,8 @@ draw.depth = (buffer) => {
     const color = (at, i) => draw.isEmpty(buffer, i) ? null
         : draw.ramp((draw.distance(draw.value(buffer, at)) - low) / span);
     return draw.picture(buffer, `Light is near (${low.toPrecision(3)}), dark is far ` +
-        `(${high.toPrecision(3)}); hatched: nothing was drawn.`, color, draw.describe(buffer, ["depth"]));
+        `(${high.toPrecision(3)}); hatched: nothing was drawn.`, color,
+        draw.describe(buffer, ["depth"]));
 };
 
 /* Undoes the octahedral form (frame/shading.h). */
@@ -137,7 +138,8 @@ draw.normal = (buffer) => draw.picture(buffer,
         if (draw.isEmpty(buffer, i))
             return null;
         const n = [0, 1, 2].map((k) => k < buffer.channels ? draw.value(buffer, at + k) : 0);
-        return (buffer.channels === 2 ? draw.octahedral(n[0], n[1]) : n).map((v) => 127.5 * v + 127.5);
+        const normal = buffer.channels === 2 ? draw.octahedral(n[0], n[1]) : n;
+        return normal.map((v) => 127.5 * v + 127.5);
     }, draw.describe(buffer, buffer.channels === 2 ? "uv" : "xyz"));
 
 /* Of the dual methods: the direction in two channels, then opacity and a mask. */
@@ -191,7 +193,8 @@ draw.source = (buffer) => draw.picture(buffer, "As the display would show it on 
 /* A premultiplied colour without its alpha: to be looked at only. */
 draw.unmultiplied = (buffer) => draw.picture(buffer, "The colour before it was multiplied.",
     (at) => buffer.data[at + 3] === 0 ? null
-        : [0, 1, 2].map((k) => draw.display(draw.value(buffer, at + k) / draw.value(buffer, at + 3))),
+        : [0, 1, 2].map((k) =>
+            draw.display(draw.value(buffer, at + k) / draw.value(buffer, at + 3))),
     () => []);
 
 draw.linear = (buffer) => draw.picture(buffer, "Without tone mapping.",
@@ -277,7 +280,8 @@ draw.differing = (a, b, channels = a.channels) => {
 
 /* The greatest difference of a pixel's channels, on a logarithmic scale from 1e-8 to 1. */
 draw.error = (a, data, what) => {
-    const most = (at) => Math.max(...[0, 1, 2, 3].map((k) => Math.abs(a.data[at + k] - data[at + k])));
+    const most = (at) => Math.max(
+        ...[0, 1, 2, 3].map((k) => Math.abs(a.data[at + k] - data[at + k])));
     let greatest = 0, squares = 0;
     const picture = draw.picture(a, "", (at) => {
         const error = most(at);

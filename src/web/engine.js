@@ -1,11 +1,11 @@
 /* Peel's pipeline in a page: engine.c as WebAssembly, and what calls it.
  *
- * Engine runs where it is made: in a worker of the page, or in a test under Node. EngineClient is the
- * page's end of that worker: the same methods, each giving a promise. */
+ * Engine runs where it is made: in a worker of the page, or in a test under Node. EngineClient is
+ * the page's end of that worker: the same methods, each giving a promise. */
 "use strict";
 
 class Engine {
-    /* wasm, scene: Uint8Array; scene as blob_write makes it. Throws an Error with Peel's message. */
+    /* wasm, scene: Uint8Array; scene as blob_write makes it. Throws an Error, Peel's message. */
     static async open(wasm, scene) {
         const engine = new Engine();
         const refuse = new Proxy({}, { get: () => () => 52 /* ENOSYS */ });
@@ -38,7 +38,8 @@ class Engine {
             this.check(this.exports.engine_set_camera(camera, at, yfov, near, far)));
     }
     /* The frame of engine_frame; each buffer has `data` of its own: Float32Array, Uint32Array,
-     * Uint16Array (halves are bits) or Uint8Array, all channels of a pixel together, top row first. */
+     * Uint16Array (halves are bits) or Uint8Array, all channels of a pixel together, top row
+     * first. */
     render(width, height, trace) {
         this.check(this.exports.engine_render(width, height, trace));
         const frame = this.json(this.exports.engine_frame());

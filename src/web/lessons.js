@@ -70,11 +70,12 @@ LESSONS.push({
     text: [
         "Several transparent surfaces are blended one over the other, from the farthest to the " +
         "nearest, and the order matters: red glass in front of blue glass is not blue in front " +
-        "of red. So each *fragment*, the piece of a surface at one pixel, must be blended in its turn.",
+        "of red. So each *fragment*, the piece of a surface at one pixel, must be blended in its " +
+        "turn.",
         "The obvious way is the painter's: sort the objects by the distance of their centres, " +
         "and draw the farthest first. [Here](step=naive) four square panes stand through each " +
-        "other on an opaque ground. The first picture is the painter's. In the second each pixel's fragments " +
-        "were sorted by themselves. The third marks in red where the two differ.",
+        "other on an opaque ground. The first picture is the painter's. In the second each " +
+        "pixel's fragments were sorted by themselves. The third marks in red where the two differ.",
         "Where two panes cross, the first is in front on one side of the line, and the second on " +
         "the other. Whichever is drawn first, one side comes out wrong. Cutting objects into " +
         "triangles does not help: triangles cross as well.",
@@ -282,8 +283,8 @@ LESSONS.push({
 /* ---- 6: numbers ---- */
 
 const LESSON_6_DUAL = " finds the nearest and the farthest in a buffer of its own, always of " +
-    "32-bit floats: with those no two fragments of a pixel are equal here. The method peel-id goes " +
-    "further: it would lose none even then, as it compares the triangles' numbers.";
+    "32-bit floats: with those no two fragments of a pixel are equal here. The method peel-id " +
+    "goes further: it would lose none even then, as it compares the triangles' numbers.";
 
 /* Why an exact method loses none. */
 const LESSON_6_REASONS = {
@@ -319,9 +320,9 @@ LESSONS.push({
     ],
     question: [
         "[Open the depth format](view=live&focus=set-depth), set it to d16, and see, in the " +
-        "live view's figures, that fragments are lost to ties. Then, with depths still in 16 bits, lose " +
-        "none, and keep the image exact. (Two depths may be equal; what else does a fragment " +
-        "have that no other has? Some [method](view=live&focus=set-method) may use it.)",
+        "live view's figures, that fragments are lost to ties. Then, with depths still in 16 " +
+        "bits, lose none, and keep the image exact. (Two depths may be equal; what else does a " +
+        "fragment have that no other has? Some [method](view=live&focus=set-method) may use it.)",
     ],
     source: "C. Everitt, 2001; Peel's own ref/pipeline/NUMBERS.md",
     async check() {

@@ -8,9 +8,9 @@ methods.make = () => {
         app.element("summary", { textContent: "The same frame by the other methods" }),
         app.element("div", { className: "methods" }));
     app.panel("methods-panel", "Methods side by side", "steps").append(
-        app.element("p", { className: "note", textContent: "Peeling is one way of many. Each method " +
-            "below draws this frame, and is compared with the truth, or where the page has none for " +
-            "these settings, with the method peel-id." }), details);
+        app.element("p", { className: "note", textContent: "Peeling is one way of many. Each " +
+            "method below draws this frame, and is compared with the truth, or where the page " +
+            "has none for these settings, with the method peel-id." }), details);
     details.addEventListener("toggle", methods.show);
     app.on("frame", methods.show);
     methods.panel = details;
@@ -37,7 +37,8 @@ methods.card = ({ name, summary, paper, exact }) => {
     const text = app.element("div", {}, app.element("h3", { textContent: name }),
         app.element("p", { textContent: `${summary[0].toUpperCase()}${summary.slice(1)}.` }),
         app.element("p", { className: "note", textContent: paper }),
-        app.element("p", { textContent: exact ? "Exact with enough passes." : "An approximation." }),
+        app.element("p", {
+            textContent: exact ? "Exact with enough passes." : "An approximation." }),
         steps);
     const pictures = Promise.all([walk.other(name), methods.reference()]);
     return app.element("div", { className: "method" }, text,

@@ -120,7 +120,8 @@ pixel.table = (className, heads, rows, label) => {
 };
 
 pixel.fragments = () => {
-    const part = app.element("div", {}, app.element("h3", { textContent: "Fragments, near to far" }));
+    const part = app.element("div", {},
+        app.element("h3", { textContent: "Fragments, near to far" }));
     if (pixel.history.fragments.length === 0) {
         part.append(app.element("p", { textContent: "No triangle at this pixel." }));
         return part;
@@ -140,10 +141,10 @@ pixel.edges = (fragment, index) => (fragment.edges ?? []).map(({ value, fill_rul
     const number = app.element("data", { className: "number", textContent: String(value) });
     number.dataset.value = String(value);
     number.dataset.what = `history.fragment.${index}.edge.${i}`;
-    const rule = fill_rule === null ? ""
-        : fill_rule === "inside" ? " = 0, through the centre: the fill rule gives it to this triangle"
-                                 : " = 0, through the centre: the fill rule gives it to the neighbour";
-    return app.element("p", { className: "formula" }, `edge ${i}: `, number, rule || " > 0: inside");
+    const whose = fill_rule === "inside" ? "this triangle" : "the neighbour";
+    const rule = fill_rule === null ? " > 0: inside"
+        : ` = 0, through the centre: the fill rule gives it to ${whose}`;
+    return app.element("p", { className: "formula" }, `edge ${i}: `, number, rule);
 });
 
 pixel.surface = ({ surface }, index) => {

@@ -75,7 +75,7 @@ ray.draw = () => {
                              app.rounded(distances[i])));
     });
     part.append(image, app.element("figcaption", { className: "note", textContent:
-        "Along the ray, with distances from the eye: a number is the peel that took the fragment, " +
-        "\u00d7 one that is not seen; below, the light T that is let through." }));
+        "Along the ray, with distances from the eye: a number is the peel that took the " +
+        "fragment, \u00d7 one that is not seen; below, the light T that is let through." }));
     return part;
 };

@@ -56,7 +56,8 @@ sides.line = (step) => {
         return [`OpenGL: not compared, ${app.data.gl.missing}.`];
     if (!app.asCarried())
         return step.buffers.length > 0
-            ? ["OpenGL: compared as the program rendered the frame; this one has other settings."] : [];
+            ? ["OpenGL: compared as the program rendered the frame; this one has other settings."]
+            : [];
     const known = step.buffers.filter((name) => sides.gl.has(name));
     const other = known.filter((name) => sides.gl.get(name).differing > 0);
     if (known.length === 0)
@@ -64,6 +65,7 @@ sides.line = (step) => {
     if (other.length === 0)
         return [app.element("span", { className: "same", textContent: "\u2713 gl: same bits" }),
                 ` in ${known.join(", ")} (${app.data.gl.renderer}).`];
+    const counts = other.map((name) => `${name} (${sides.gl.get(name).differing} bytes)`);
     return [app.element("span", { className: "differs", textContent: "\u2717 gl: other bits" }),
-            ` in ${other.map((name) => `${name} (${sides.gl.get(name).differing} bytes)`).join(", ")}.`];
+            ` in ${counts.join(", ")}.`];
 };

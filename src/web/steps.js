@@ -50,7 +50,8 @@ steps.nextPeel = (direction) => {
 steps.onKey = (event) => {
     const typing = event.target.closest?.("input, select, textarea, [contenteditable]");
     const pressing = event.key === " " && event.target.closest?.("button, summary, a");
-    if (app.view !== "steps" || typing || pressing || event.ctrlKey || event.metaKey || event.altKey)
+    const modified = event.ctrlKey || event.metaKey || event.altKey;
+    if (app.view !== "steps" || typing || pressing || modified)
         return;
     const move = event.shiftKey && app.pixel && steps.MOVES[event.key];
     if (move)
@@ -93,8 +94,8 @@ steps.show = () => {
 };
 
 steps.showPictures = (step) => {
-    const made = [...step.pictures(), ...sides.pictures(step)].map((one) => one instanceof Node ? one
-                                              : figure.make(one.title, one.picture));
+    const made = [...step.pictures(), ...sides.pictures(step)].map((one) =>
+        one instanceof Node ? one : figure.make(one.title, one.picture));
     const count = step.kind === "naive" ? 3 : Math.min(made.length, 4);
     steps.at("pictures").closest(".step").classList.toggle(
         "broad", step.kind === "naive" || step.kind === "truth");
@@ -115,7 +116,8 @@ steps.showCode = ({ code, lines }) => {
 
 steps.showEquation = () => {
     const place = steps.at("equation"), step = app.steps[app.step];
-    const heading = app.element("h3", { textContent: app.pixel ? `At pixel ${app.pixel}` : "Equation" });
+    const heading = app.element("h3", {
+        textContent: app.pixel ? `At pixel ${app.pixel}` : "Equation" });
     const body = app.pixel ? step.equation(app.pixel) : null;
     place.replaceChildren(heading, body ?? app.element("p", {
         className: "note", textContent: app.pixel ? "Nothing is computed for a pixel in this step."

@@ -55,7 +55,8 @@ walk.number = (name, [x, y], channel = 0) => {
 /* A line of an equation: formula`T = ${node}`. */
 walk.formula = (texts, ...nodes) => {
     const line = app.element("p", { className: "formula" });
-    texts.forEach((text, i) => line.append(text, ...(nodes[i] === undefined ? [] : [nodes[i]].flat())));
+    texts.forEach((text, i) =>
+        line.append(text, ...(nodes[i] === undefined ? [] : [nodes[i]].flat())));
     return line;
 };
 
@@ -112,12 +113,12 @@ walk.other = (method) => {
 walk.naive = () => walk.step({
     id: "naive", kind: "naive", group: "Before we start", buffers: ["display"],
     title: "The naive way: sort the objects and blend",
-    text: "A transparent surface lets some of the light from behind it through, so what is behind " +
-        "must be known first. The obvious plan, the painter's, is to sort the objects by distance " +
-        "and to blend each over those behind it. But an object has one place in the order, and " +
-        "its surfaces do not: where objects cross or surround each other, or show two of their " +
-        "own sides, no order of objects is right for every pixel. Depth peeling decides for every " +
-        "pixel by itself.",
+    text: "A transparent surface lets some of the light from behind it through, so what is " +
+        "behind must be known first. The obvious plan, the painter's, is to sort the objects by " +
+        "distance and to blend each over those behind it. But an object has one place in the " +
+        "order, and its surfaces do not: where objects cross or surround each other, or show two " +
+        "of their own sides, no order of objects is right for every pixel. Depth peeling decides " +
+        "for every pixel by itself.",
     lines: ["sort the objects, far to near", "for each object", "  for each of its fragments",
             "    colour \u2190 source.rgb + (1 \u2212 \u03b1) \u00b7 colour"],
     code: [1, 4],
@@ -125,7 +126,8 @@ walk.naive = () => walk.step({
         const other = draw.differing(display, app.frame.buffer("display"));
         return [figure.make("Painter: objects sorted", draw.bytes({ ...display,
                     name: "painter.display" })),
-                figure.make("Each pixel's fragments in order", draw.bytes(app.frame.buffer("display"))),
+                figure.make("Each pixel's fragments in order",
+                            draw.bytes(app.frame.buffer("display"))),
                 figure.make("Where they differ", other),
                 ...(other.count === 0 ? [walk.says("Of this scene, seen from here, the painter's " +
                     "image is right.")] : [])];
@@ -143,8 +145,8 @@ walk.OPAQUE = [
      "The normal is the direction that the surface faces, a vector of length 1.",
      walk.list("opaque.normal", ["x", "y", "z"])],
     ["position", "Position of the opaque surface",
-     "Where the surface is, seen from the eye: x to the right, y up, and z towards the viewer, so " +
-     "that what is ahead has a negative z.", walk.list("opaque.position", ["x", "y", "z"])],
+     "Where the surface is, seen from the eye: x to the right, y up, and z towards the viewer, " +
+     "so that what is ahead has a negative z.", walk.list("opaque.position", ["x", "y", "z"])],
     ["diffuse", "Base colour of the opaque surface", "The surface's own colour.",
      walk.list("opaque.diffuse", ["red", "green", "blue"])],
     ["color", "Lit colour of the opaque surface",
@@ -181,6 +183,9 @@ walk.depths = (rows, pixel) => {
 /* Which of the two depth buffers peel k writes. */
 walk.side = (k) => "AB"[k % 2];
 
+walk.previousDepth = (k) => k === 0 ? []
+    : walk.show(`peel.${k - 1}.depth`, `Previous depth (buffer ${walk.side(k - 1)})`);
+
 walk.peelCompare = (k) => ({
     title: k === 0 ? "What this peel may take" : "What this peel may take: behind the last layer",
     text: k === 0
@@ -192,7 +197,7 @@ walk.peelCompare = (k) => ({
     code: k === 0 ? [4, 5] : [4, 5, 6],
     buffers: ["opaque.depth", ...(k > 0 ? [`peel.${k - 1}.depth`] : [])],
     pictures: () => [
-        ...(k > 0 ? walk.show(`peel.${k - 1}.depth`, `Previous depth (buffer ${walk.side(k - 1)})`) : []),
+        ...walk.previousDepth(k),
         ...walk.show("opaque.depth", "Opaque depth")],
     equation: (pixel) => walk.lines(
         walk.depths([...(k > 0 ? [["previous depth", `peel.${k - 1}.depth`]] : []),
@@ -204,9 +209,9 @@ walk.peelCompare = (k) => ({
 walk.peelDiscard = (k) => app.frame.buffer(`peel.${k}.hidden`) && ({
     title: "What is thrown away, and by which test",
     text: "All transparent surfaces are drawn again in every peel. Most of their fragments are " +
-        "discarded: at or before the previous depth (taken already), at or behind the opaque depth " +
-        "(never seen), or because another fragment of this peel is nearer (they wait for a later " +
-        "peel).",
+        "discarded: at or before the previous depth (taken already), at or behind the opaque " +
+        "depth (never seen), or because another fragment of this peel is nearer (they wait for a " +
+        "later peel).",
     code: [5, 6, 7],
     buffers: [],
     pictures: () => [{ title: "Discarded by", picture: draw.rejected(k) }],
@@ -227,7 +232,7 @@ walk.peelDepth = (k) => ({
     code: [7],
     buffers: [`peel.${k}.depth`],
     pictures: () => [
-        ...(k > 0 ? walk.show(`peel.${k - 1}.depth`, `Previous depth (buffer ${walk.side(k - 1)})`) : []),
+        ...walk.previousDepth(k),
         ...walk.show(`peel.${k}.depth`, `New depth (buffer ${walk.side(k)})`),
         ...draw.slice(walk.peelSlice(k))],
     equation: (pixel) => walk.hasFragment(`peel.${k}`, pixel)
@@ -239,7 +244,8 @@ walk.peelDepth = (k) => ({
 
 /* The layers so far in the pixel's row. */
 walk.peelSlice = (k) => {
-    const layer = (peel, color, text) => ({ buffer: app.frame.buffer(`peel.${peel}.depth`), color, text });
+    const layer = (peel, color, text) =>
+        ({ buffer: app.frame.buffer(`peel.${peel}.depth`), color, text });
     const rows = [{ buffer: app.frame.buffer("opaque.depth"), color: [1, 115, 178],
                     text: "opaque depth, where it is not far behind" }];
     for (let peel = 0; peel < k; peel++)
@@ -261,8 +267,8 @@ walk.peelGBuffer = (k) => {
               "that stay only the colour is stored, multiplied by \u03b1, and \u03b1 as its " +
               "fourth channel."
             : "Of the fragments that stay, the same properties are stored as of the opaque " +
-            "surfaces. The fourth channel of the base colour is the opacity, \u03b1: the part of the " +
-            "light from behind that the surface keeps from us.",
+            "surfaces. The fourth channel of the base colour is the opacity, \u03b1: the part of " +
+            "the light from behind that the surface keeps from us.",
         code: [7],
         buffers: has.filter((what) => what !== "primitive").map((what) => `peel.${k}.${what}`),
         pictures: () => has.flatMap((what) => walk.show(`peel.${k}.${what}`, walk.GBUFFER[what])),
@@ -286,7 +292,8 @@ walk.peelLight = (k) => app.frame.buffer(`peel.${k}.source`) && ({
     buffers: [],
     pictures: () => [
         ...walk.show(`peel.${k}.source`, "Lit colour", draw.unmultiplied),
-        ...walk.show(`peel.${k}.source`, "Source: colour \u00b7 \u03b1", (buffer) => draw.source(buffer)),
+        ...walk.show(`peel.${k}.source`, "Source: colour \u00b7 \u03b1",
+                     (buffer) => draw.source(buffer)),
         ...walk.show(`peel.${k}.source`, "Source: \u03b1", (buffer) =>
             draw.grey(buffer, 3, "Black is 0, white is 1."))],
     equation: (pixel) => walk.lines(...["red", "green", "blue"].map((label, i) =>
@@ -308,11 +315,13 @@ walk.under = (source, before, after) => (pixel) => {
         : app.numberElement(i === 3 ? 1 : 0, "r32f", `${after}.cleared.${"rgba"[i]}`);
     const color = (i) => buffer ? walk.number(source, pixel, i) : "source";
     return walk.lines(...["red", "green", "blue"].map((label, i) =>
-        walk.formula`${label}: ${was(i)} + ${was(3)} \u00b7 ${color(i)} = ${walk.number(after, pixel, i)}`),
+        walk.formula`${label}: ${was(i)} + ${was(3)} \u00b7 ${color(i)} = ${
+            walk.number(after, pixel, i)}`),
         walk.seedBlend(source)
-            ? walk.formula`T: ${was(3)} + ${was(3)} \u00b7 ${color(3)} = ${walk.number(after, pixel, 3)
-                } (not used: nothing comes through)`
-            : walk.formula`T: ${was(3)} \u00b7 (1 \u2212 ${color(3)}) = ${walk.number(after, pixel, 3)}`);
+            ? walk.formula`T: ${was(3)} + ${was(3)} \u00b7 ${color(3)} = ${
+                walk.number(after, pixel, 3)} (not used: nothing comes through)`
+            : walk.formula`T: ${was(3)} \u00b7 (1 \u2212 ${color(3)}) = ${
+                walk.number(after, pixel, 3)}`);
 };
 
 walk.accums = (before, after, source) => [
@@ -377,9 +386,10 @@ walk.peels = (parts = walk.PARTS, lines = walk.peelCode()) => {
     for (let k = 0; k < app.frame.peels; k++)
         for (const [part, make] of parts) {
             const made = make(k);
+            const group = `Peel ${k} (${k + 1} of ${app.frame.peels})`;
             if (made)
-                all.push(walk.step({ kind: "peel", group: `Peel ${k} (${k + 1} of ${app.frame.peels})`,
-                                     peel: k, part, id: `peel-${k}-${part}`, lines, ...made }));
+                all.push(walk.step({ kind: "peel", group, peel: k, part, id: `peel-${k}-${part}`,
+                                     lines, ...made }));
         }
     return all;
 };

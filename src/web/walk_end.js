@@ -15,10 +15,12 @@ walk.stop = () => {
                count(lost, "lost_to_pass_limit"), lost === 1 ? " fragment was" : " fragments were",
                " never taken. The light they would have added is at most what still came through " +
                "in front of them: a " +
-               "transmittance of up to ", app.numberElement(residual, "double", "frame.residual_max"),
+               "transmittance of up to ",
+               app.numberElement(residual, "double", "frame.residual_max"),
                "."]
-            : ["One more geometry pass would keep no fragment: every transparent surface was taken " +
-               "by one of the ", count(peels, "peels"), peels === 1 ? " peel, in " : " peels, in ",
+            : ["One more geometry pass would keep no fragment: every transparent surface was " +
+               "taken by one of the ", count(peels, "peels"),
+               peels === 1 ? " peel, in " : " peels, in ",
                count(passes, "geometry_passes"), " geometry passes."],
         pictures: () => [{ title: "Layers in each pixel", picture: walk.layerCounts() }],
         equation: ([x, y]) => walk.formula`layers here: ${app.numberElement(
@@ -50,8 +52,8 @@ walk.light = (before, lines, code) => walk.step({
           "more."
         : "The opaque surfaces were waiting in their G-buffer. Now they are lit, once, and " +
           "blended " +
-        "behind all layers like one more layer, with an \u03b1 of 1: after it nothing comes through " +
-        "any more.",
+        "behind all layers like one more layer, with an \u03b1 of 1: after it nothing comes " +
+        "through any more.",
     buffers: ["accum"],
     pictures: () => walk.accums(before, "accum", "opaque.source"),
     equation: walk.under("opaque.source", before, "accum"),
@@ -63,12 +65,15 @@ walk.background = (lines, code) => walk.step({
     text: "What is left of T shows the background. The fourth channel of the final image is the " +
         "coverage, 1 \u2212 T.",
     buffers: ["accum"],
-    pictures: () => [...walk.show("accum", "Accumulated"), ...walk.show("final", "Final, linear light")],
+    pictures: () => [...walk.show("accum", "Accumulated"),
+                     ...walk.show("final", "Final, linear light")],
     equation: (pixel) => walk.lines(...["red", "green", "blue"].map((label, i) =>
         walk.formula`${label}: ${walk.number("accum", pixel, i)} + ${walk.throughAll(pixel)
-            } \u00b7 ${app.numberElement(app.scene.background[i], "r32f", `scene.background.${"rgb"[i]}`)
+            } \u00b7 ${app.numberElement(app.scene.background[i], "r32f",
+                                         `scene.background.${"rgb"[i]}`)
             } = ${walk.number("final", pixel, i)}`),
-        walk.formula`coverage: 1 \u2212 ${walk.throughAll(pixel)} = ${walk.number("final", pixel, 3)}`),
+        walk.formula`coverage: 1 \u2212 ${walk.throughAll(pixel)} = ${
+            walk.number("final", pixel, 3)}`),
     source: walk.RAPETTA });
 
 /* The transmittance towards the background. */
@@ -85,7 +90,8 @@ walk.display = (lines, code) => walk.step({
                      ...walk.show("display", "Display")],
     equation: (pixel) => walk.lines(...["red", "green", "blue"].map((label, i) =>
         walk.formula`${label}: 255 \u00b7 (${walk.number("final", pixel, i)} / (${
-            walk.number("final", pixel, i)} + 1))^(1/2.2) \u2192 ${walk.code("display", pixel, i)}`)),
+            walk.number("final", pixel, i)} + 1))^(1/2.2) \u2192 ${
+            walk.code("display", pixel, i)}`)),
     source: `${walk.RAPETTA} (Reinhard's tone mapping, display gamma)` });
 
 /* The integer that is stored of a unorm channel. */
@@ -97,30 +103,31 @@ walk.code = (name, [x, y], channel) => {
 
 /* ---- how right it is ---- */
 
+walk.LINEAR = "Linear light, as the display would show it.";
+
 walk.truth = () => walk.step({
     id: "truth", kind: "truth", group: "How right is it?", lines: [], code: [],
     title: "Beside the truth",
     text: walk.truthText(),
     buffers: ["accum", "display"],
     pictures: () => sides.truth()
-        ? [...walk.show("final", "This frame", (buffer) => draw.light(buffer, "Linear light, as the " +
-                                                                  "display would show it.")),
-           { title: "Truth", picture: draw.light(walk.truthBuffer(), "Linear light, as the display " +
-                                                  "would show it.") },
+        ? [...walk.show("final", "This frame", (buffer) => draw.light(buffer, walk.LINEAR)),
+           { title: "Truth", picture: draw.light(walk.truthBuffer(), walk.LINEAR) },
            { title: "Difference of this frame", picture: draw.error(app.frame.buffer("final"),
                                                                     sides.truth(), "truth.error") }]
         : walk.show("display", "Display"),
     equation: (pixel) => sides.truth() && walk.lines(...["red", "green", "blue", "coverage"].map(
         (label, i) => walk.formula`${label}: ${walk.number("final", pixel, i)} here, ${
-            app.numberElement(sides.truth()[4 * (pixel[1] * app.frame.width + pixel[0]) + i], "r32f",
-                              `truth.final.${"rgba"[i]}`)} in truth`) ),
+            app.numberElement(sides.truth()[4 * (pixel[1] * app.frame.width + pixel[0]) + i],
+                              "r32f", `truth.final.${"rgba"[i]}`)} in truth`)),
     source: "" });
 
-walk.truthBuffer = () => ({ ...app.frame.buffer("final"), name: "truth.final", data: sides.truth() });
+walk.truthBuffer = () => ({
+    ...app.frame.buffer("final"), name: "truth.final", data: sides.truth() });
 
 walk.truthText = () => {
-    const { truth } = app.data, what = "The truth is a renderer of its own: it sorts every pixel's " +
-        "fragments exactly and computes in double precision. ";
+    const { truth } = app.data, what = "The truth is a renderer of its own: it sorts every " +
+        "pixel's fragments exactly and computes in double precision. ";
     if (truth.missing !== undefined)
         return `${what}It has nothing to say here: ${truth.missing}.`;
     if (!sides.truth())

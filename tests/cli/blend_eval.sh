@@ -66,12 +66,20 @@ exits 0 '200 columns' "$peel" blend eval --width 200 --arithmetic exact,separate
 narrow '200 columns' 200
 has 'side by side' ' exact .*ULP .*separate .*ULP .*fused .*ULP .*driver .*ULP'
 exits 0 'no colours in a pipe' test "$(tr -cd '\033' <output | wc -c)" -eq 0
+exits 0 '--width' "$peel" blend eval --width 150 --arithmetic exact,driver 1,0,0,1/2
+cp output wide
+exits 0 'COLUMNS' env COLUMNS=150 "$peel" blend eval --arithmetic exact,driver 1,0,0,1/2
+exits 0 'COLUMNS is as --width' cmp output wide
 if command -v script >/dev/null; then
     exits 0 'a terminal' env TERM=xterm NO_COLOR= script -qec "'$peel' blend eval 1,0,0,1/3" \
         /dev/null
     exits 0 'colours in a terminal' test "$(tr -cd '\033' <output | wc -c)" -gt 20
     env TERM=xterm NO_COLOR=1 script -qec "'$peel' blend eval 1,0,0,1/3" /dev/null >output
     exits 0 'NO_COLOR' test "$(tr -cd '\033' <output | wc -c)" -eq 0
+    for terminal in dumb ''; do
+        env TERM=$terminal script -qec "'$peel' blend eval 1,0,0,1/3" /dev/null >output
+        exits 0 "TERM=$terminal" test "$(tr -cd '\033' <output | wc -c)" -eq 0
+    done
 fi
 
 # ---- equations, formats, arithmetics ----

@@ -10,10 +10,10 @@
 #include "frame/method.h"
 #include "frame/pixel_trace.h"
 #include "frame/setting.h"
-#include "number/blend.h"
 #include "number/op.h"
 #include "ref/pipeline/pipeline.h"
 #include "scene/generate.h"
+#include "step_blend.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -63,10 +63,7 @@ static Target *target_of(Target targets[TARGETS], const json_t *step)
     if (target->name)
         return target;
     *target = (Target){name, find_format(json_string_value(json_object_get(step, "format"))), {0}};
-    if (strcmp(name, "accum") == 0 || strcmp(name, "back") == 0)
-        blend_clear(target->format, target->pixel);
-    else if (strcmp(name, "product") == 0)
-        memcpy(target->pixel, &(float){1.0f}, sizeof(float));
+    step_clear(name, target->format, target->pixel);
     return target;
 }
 
@@ -85,26 +82,13 @@ static int is_stored(const Target *target, const json_t *values)
     return 1;
 }
 
-static int blend(const json_t *step, Target *target)
+static bool blend(const json_t *step, Target *target)
 {
-    static const struct {
-        const char *name;
-        void (*blend)(PixelFormat format, const float source[4], void *pixel);
-    } equations[] = {{"under", blend_under},
-                     {"over", blend_over},
-                     {"add", blend_add},
-                     {"product", blend_product},
-                     {"opaque_seed", blend_opaque_seed}};
-    const char *name = json_string_value(json_object_get(step, "equation"));
     float source[4];
     for (int i = 0; i < 4; i++)
         source[i] = (float)number(json_object_get(step, "source"), (size_t)i);
-    for (size_t i = 0; i < sizeof equations / sizeof *equations; i++)
-        if (strcmp(name, equations[i].name) == 0) {
-            equations[i].blend(target->format, source, target->pixel);
-            return 1;
-        }
-    return 0;
+    return step_blend(json_string_value(json_object_get(step, "equation")), target->format, source,
+                      target->pixel);
 }
 
 /* NULL, or what is wrong. accum: the frame's; NULL where it is not known. */
@@ -115,7 +99,7 @@ static const char *replay(const json_t *history, const PixelValue *accum)
     const char *format = json_string_value(json_object_get(history, "accum_format"));
     size_t i;
     targets[0] = (Target){"accum", find_format(format), {0}};
-    blend_clear(targets[0].format, targets[0].pixel);
+    step_clear("accum", targets[0].format, targets[0].pixel);
     json_array_foreach(steps, i, step)
     {
         Target *target = target_of(targets, step);

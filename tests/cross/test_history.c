@@ -7,11 +7,11 @@
 #include "base/memory.h"
 #include "frame/method.h"
 #include "frame/shading.h"
-#include "number/blend.h"
 #include "number/op.h"
 #include "ref/pipeline/pipeline.h"
 #include "ref/pipeline/retrace.h"
 #include "scene/generate.h"
+#include "step_blend.h"
 
 #include <stdio.h>
 
@@ -124,15 +124,6 @@ static void check_trace(const History *history, const PixelTrace *trace)
 
 /* ---- the history against itself ---- */
 
-static void clear(const char *target, PixelFormat format, void *pixel)
-{
-    memset(pixel, 0, 16);
-    if (strcmp(target, "accum") == 0 || strcmp(target, "back") == 0)
-        blend_clear(format, pixel);
-    else if (strcmp(target, "product") == 0)
-        memcpy(pixel, &(float){1.0f}, sizeof(float));
-}
-
 static PixelFormat find_format(const char *name)
 {
     PixelFormat format = FORMAT_NONE;
@@ -142,23 +133,11 @@ static PixelFormat find_format(const char *name)
 
 static void replay_step(const HistoryStep *step, PixelFormat format, void *pixel)
 {
-    static const struct {
-        const char *name;
-        void (*blend)(PixelFormat format, const float source[4], void *pixel);
-    } equations[] = {{"under", blend_under},
-                     {"over", blend_over},
-                     {"add", blend_add},
-                     {"product", blend_product},
-                     {"opaque_seed", blend_opaque_seed}};
     float source[4];
     for (int i = 0; i < 4; i++)
         source[i] = (float)step->source[i];
-    for (size_t i = 0; i < sizeof equations / sizeof *equations; i++)
-        if (strcmp(step->equation, equations[i].name) == 0) {
-            equations[i].blend(format, source, pixel);
-            return;
-        }
-    ck_abort_msg("no equation %s", step->equation);
+    ck_assert_msg(step_blend(step->equation, format, source, pixel), "no equation %s",
+                  step->equation);
 }
 
 /* Every target's steps, from its clear value to what the next step finds; the last one of the
@@ -167,7 +146,7 @@ static void check_replay(const History *history)
 {
     static const char *const targets[] = {"accum", "back", "sum", "count", "product"};
     for (size_t t = 0; t < sizeof targets / sizeof *targets; t++) {
-        _Alignas(8) unsigned char pixel[16];
+        _Alignas(8) unsigned char pixel[16] = {0};
         PixelValue value;
         bool begun = false;
         for (size_t i = 0; i < history->step_count; i++) {
@@ -176,7 +155,7 @@ static void check_replay(const History *history)
                 continue;
             value.format = find_format(step->format);
             if (!begun)
-                clear(step->target, value.format, pixel);
+                step_clear(step->target, value.format, pixel);
             begun = true;
             memcpy(value.bytes, pixel, sizeof pixel);
             check_bytes(&value, step->before, "before", history);
