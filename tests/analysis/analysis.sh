@@ -49,7 +49,9 @@ count_reports() {
     for report in "$logs"/report.*; do
         [ -s "$report" ] || continue
         reports=$((reports + 1))
-        sed -n -e 's/^SUMMARY: //p' -e 's/.*: \(runtime error: .*\)/\1/p' "$report"
+        # A sanitizer's last line, UBSan's only one, the first of each that valgrind has.
+        sed -n -e 's/^SUMMARY: //p' -e 's/.*: \(runtime error: .*\)/\1/p' \
+            -e 's/ in loss record .*//' -e 's/^==[0-9]*== \([^ ].*\)/\1/p' "$report"
     done >"$logs/summary"
     sort "$logs/summary" | uniq -c | sort -rn
     echo "$name: $tests tests, $failed failed, $reports reports (in $logs)"

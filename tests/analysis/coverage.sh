@@ -16,7 +16,7 @@ run_tests '^$'
 
 echo "$name: counting"
 (cd "$root" && gcovr --root . --filter src/ --filter ref/ --filter gl/ -j "$(nproc)" \
-    --csv "$logs/lines.csv" "$directory") >"$logs/gcovr.log" 2>&1 || {
+    --csv "$logs/lines.csv" "$directory/src" "$directory/gl") >"$logs/gcovr.log" 2>&1 || {
     tail -5 "$logs/gcovr.log" >&2
     stop 'gcovr failed'
 }

@@ -8,7 +8,8 @@ set -u
 . "$(dirname "$0")/analysis.sh"
 
 build thread
-export TSAN_OPTIONS="log_path=$logs/report:suppressions=$here/threads.supp:second_deadlock_stack=1"
+# No search for deadlocks: Mesa holds more locks at a time than it counts (64), of which it dies.
+export TSAN_OPTIONS="log_path=$logs/report:suppressions=$here/threads.supp:detect_deadlocks=0"
 export CK_TIMEOUT_MULTIPLIER=20
 run_tests '^$'
 count_reports

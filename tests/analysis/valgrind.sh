@@ -1,0 +1,22 @@
+#!/bin/sh
+# The tests of CI under valgrind: reads of what was never written, leaks, memory out of bounds.
+#
+#   valgrind.sh [SOURCE_DIR] [REGEX]   all tests, or those whose names match REGEX
+#
+# The build flushes denormals in software, because valgrind has no such mode, and has no vector
+# paths. Random cases are few: PEEL_TEST_COUNT, 10 unless it is set. Hours for all tests.
+#
+# Not run, because nothing of Peel would run under valgrind: what node starts (gltf_validator,
+# live_view, web_*), what a compiler makes of the installed library (package), includes.
+# Exits 1 if a test fails or a process of one reports anything.
+set -u
+. "$(dirname "$0")/analysis.sh"
+
+needs valgrind valgrind
+build software -DCMAKE_CROSSCOMPILING_EMULATOR=valgrind
+export VALGRIND_OPTS="--quiet --leak-check=full --show-leak-kinds=definite,possible \
+--errors-for-leak-kinds=definite,possible --num-callers=30 --fullpath-after=$root/ \
+--log-file=$logs/report.%p"
+export CK_TIMEOUT_MULTIPLIER=100 PEEL_TEST_COUNT="${PEEL_TEST_COUNT-10}" PEEL_TEST_STRIDE=100003
+run_tests '^(gltf_validator|live_view|web_.*|package|includes)$'
+count_reports
