@@ -273,8 +273,9 @@ static void print_memory(const Resident *resident, bool flat)
         printf(" %.1f MiB resident, %.2f of it allocated after %.0f %%%s", sample.resident,
                sample.heap, 100.0 * parts[i], i < 2 ? ";" : "");
     }
-    printf(": %s (%.0f and %.0f may be added in the second half)\n", flat ? "flat" : "not flat",
-           RESIDENT_MAX, RESIDENT_HEAP_MAX);
+    ResidentSample allowed = resident_allowed(resident);
+    printf(": %s (%.1f and %.2f may be added in the second half)\n", flat ? "flat" : "not flat",
+           allowed.resident, allowed.heap);
 }
 
 static int conclude(Campaign *campaign, bool fused)

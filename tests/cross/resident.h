@@ -7,12 +7,14 @@
 #include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
+#include <string.h>
 
 /* MiB; 0 where that is not known. */
 typedef struct ResidentSample {
-    double resident; /* after unused memory was given back */
-    double heap;     /* allocated and not freed */
+    /* Of the process's own, without the pages of libraries, which come as they are first used;
+     * after unused memory was given back. */
+    double resident;
+    double heap; /* allocated and not freed */
 } ResidentSample;
 
 /* Samples, evenly spread over the work. */
@@ -26,25 +28,25 @@ enum {
     RESIDENT_SAMPLES = 1000
 };
 
-/* MiB that the second half of the work may add. To the heap: the driver's table of known shaders,
- * and ours of nothing. To what is resident: about 5 KiB for each GL context that was made and
- * destroyed, of Mesa's code generator (measured over frames without anything else). */
-#define RESIDENT_HEAP_MAX 1.0
-#define RESIDENT_MAX      32.0
+/* What each step of the second half may add, in KiB, beside a few MiB for the largest frames: Mesa
+ * keeps about half a KiB allocated, and 6 KiB resident, for each context that was made and
+ * destroyed (measured with gl alone; without gl nothing is added). */
+#define RESIDENT_STEP_HEAP 1.0
+#define RESIDENT_STEP      10.0
+#define RESIDENT_SLACK     4.0
 
 static inline ResidentSample resident_now(void)
 {
-    unsigned long long pages = 0;
     struct mallinfo2 heap = mallinfo2();
     ResidentSample sample = {.heap = (double)(heap.uordblks + heap.hblkhd) / (1 << 20)};
+    char line[128];
     malloc_trim(0);
-    FILE *file = fopen("/proc/self/statm", "r");
-    if (!file)
-        return sample;
-    if (fscanf(file, "%*u %llu", &pages) != 1)
-        pages = 0;
-    fclose(file);
-    sample.resident = (double)pages * (double)sysconf(_SC_PAGESIZE) / (1 << 20);
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file && fgets(line, sizeof line, file))
+        if (strncmp(line, "RssAnon:", 8) == 0)
+            sample.resident = strtod(line + 8, NULL) / 1024.0;
+    if (file)
+        fclose(file);
     return sample;
 }
 
@@ -78,11 +80,19 @@ static inline ResidentSample resident_at(const Resident *resident, double part)
     return resident->samples[(size_t)(part * (double)(resident->count - 1) + 0.5)];
 }
 
+/* MiB that the second half of the work may add. */
+static inline ResidentSample resident_allowed(const Resident *resident)
+{
+    double steps = (double)(resident->every * resident->count) / 2.0;
+    return (ResidentSample){.resident = RESIDENT_SLACK + RESIDENT_STEP * steps / 1024.0,
+                            .heap = RESIDENT_STEP_HEAP * (1.0 + steps / 1024.0)};
+}
+
 static inline bool resident_is_flat(const Resident *resident)
 {
     ResidentSample half = resident_at(resident, 0.5), end = resident_at(resident, 1.0);
-    return end.resident <= half.resident + RESIDENT_MAX &&
-           end.heap <= half.heap + RESIDENT_HEAP_MAX;
+    ResidentSample allowed = resident_allowed(resident);
+    return end.resident <= half.resident + allowed.resident && end.heap <= half.heap + allowed.heap;
 }
 
 #endif
