@@ -25,6 +25,7 @@ typedef struct ChunkOutput {
     Primitive *primitives, *grown;
     size_t primitive_count, primitive_capacity, grown_capacity;
     size_t first_cut, first_primitive; /* where they go, in Geometry.vertices and the list */
+    bool wide;                         /* as Geometry.wide */
 } ChunkOutput;
 
 typedef struct Build {
@@ -98,6 +99,7 @@ static Result emit(const Build *build, ChunkOutput *output, const Vertex *const 
         if (result != RESULT_OK)
             return result;
     }
+    output->wide |= setup_is_wide(corners);
     output->primitives[output->primitive_count++] = primitive;
     return RESULT_OK;
 }
@@ -218,6 +220,7 @@ static Result place(Build *build)
         output->first_primitive = list->count;
         geometry->vertex_count += output->cut_count;
         list->count += output->primitive_count;
+        geometry->wide |= output->wide;
     }
     if (geometry->vertex_count > UINT32_MAX)
         return result_fail(RESULT_UNSUPPORTED, "more than 2^32 − 1 vertices after clipping");

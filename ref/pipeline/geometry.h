@@ -53,6 +53,7 @@ typedef struct Geometry {
     Vertex *vertices;
     size_t vertex_count;
     PrimitiveList opaque, transparent;
+    bool wide; /* one of them is too large for the tile path: setup_is_wide */
 } Geometry;
 
 /* fused: see op_muladd. The caller frees with geometry_free. NO_MEMORY on failure. */

@@ -45,7 +45,8 @@ static Result render(const Scene *scene, const RenderDesc *desc, TraceSink *trac
         return result;
     bool opaque_only = !needs_has(&pass.needs, NEED_TRANSPARENT);
     bool definition = trace || desc->ref_path == REF_PATH_DEFINITION ||
-                      !methods[desc->method].tile || (desc->mutations & ~MUTATE_VIEW);
+                      !methods[desc->method].tile || pass.geometry.wide ||
+                      (desc->mutations & ~MUTATE_VIEW);
     out->threads = pool_threads(pass.pool);
     out->fused = pass.fused;
     snprintf(out->version, sizeof out->version, "Peel %s", PEEL_VERSION);

@@ -1,5 +1,7 @@
 #include "ref/pipeline/setup.h"
 
+#include <stdlib.h>
+
 static int64_t cross(int32_t ax, int32_t by, int32_t bx, int32_t ay)
 {
     return (int64_t)((uint64_t)((int64_t)ax * by) - (uint64_t)((int64_t)bx * ay));
@@ -19,6 +21,16 @@ Facing setup_facing(const Vertex *const corners[3], bool flipped)
     if (area == 0)
         return FACING_NONE;
     return (area < 0) != flipped ? FACING_FRONT : FACING_BACK;
+}
+
+bool setup_is_wide(const Vertex *const corners[3])
+{
+    bool wide = false;
+    for (int i = 0; i < 3; i++) {
+        Edge edge = setup_edge(corners[i], corners[(i + 1) % 3]);
+        wide |= llabs(edge.a) > SETUP_STEP_MAX || llabs(edge.b) > SETUP_STEP_MAX;
+    }
+    return wide;
 }
 
 static int minimum(int a, int b)

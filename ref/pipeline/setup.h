@@ -41,6 +41,15 @@ Facing setup_facing(const Vertex *const corners[3], bool flipped);
 /* Pixels that can be covered, inside width×height; empty when x0 > x1 or y0 > y1. */
 PixelRect setup_bounds(const Vertex *const corners[3], int width, int height);
 
+enum {
+    /* Of an edge, in 1/256 pixel: no viewport is larger. */
+    SETUP_STEP_MAX = SIZE_MAX_PIXELS * 256
+};
+
+/* Whether an edge is longer than that, in x or y. What the clipper leaves lies within the viewport
+ * but where w is next to 0, and rounding puts a corner anywhere. */
+bool setup_is_wide(const Vertex *const corners[3]);
+
 /* Of two snapped coordinates, wrapping as the driver does: a vertex with w = 0 snaps to INT32_MIN.
  * Those of clipped vertices lie within the viewport, and every product here fits. */
 static inline int32_t setup_difference(int32_t a, int32_t b)

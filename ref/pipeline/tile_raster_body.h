@@ -22,10 +22,7 @@ enum {
 #else
     BLOCK_WIDTH = 4,
 #endif
-    BLOCK_HEIGHT = LANES / BLOCK_WIDTH,
-    /* Of an edge, in 1/256 pixel: what the clipper leaves lies within the viewport. The steps of
-     * TILE_MAX pixels fit in 32 bits. */
-    EDGE_STEP_MAX = SIZE_MAX_PIXELS * 256
+    BLOCK_HEIGHT = LANES / BLOCK_WIDTH
 };
 
 #define TILE_INLINE static inline __attribute__((always_inline))
@@ -101,7 +98,8 @@ static inline bool grid_inside(const TileGrid *grid, int x, int y)
 /* Reduces an edge to the tile. Returns false where no pixel of it is inside. */
 static inline bool reduce_edge(const TileGrid *grid, const Edge *edge, int i, TileTriangle *out)
 {
-    assert(llabs(edge->a) <= EDGE_STEP_MAX && llabs(edge->b) <= EDGE_STEP_MAX);
+    /* So that the steps of TILE_MAX pixels fit in 32 bits: see Geometry.wide. */
+    assert(llabs(edge->a) <= SETUP_STEP_MAX && llabs(edge->b) <= SETUP_STEP_MAX);
     int64_t at_first =
         ((edge->c + 255) >> 8) - 1 + edge->b * grid->rect.y0 - edge->a * grid->rect.x0;
     int64_t reach = grid->size - 1, most = at_first, least = at_first;

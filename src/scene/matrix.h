@@ -1,8 +1,7 @@
 /* Matrices that feed a pipeline: double precision, + − × ÷ √ and our own trigonometry in a fixed
  * order, so that every machine hands the renderers the same floats.
  *
- * Column-major: element (row r, column c) is m[4·c + r]; vectors are columns. Angles in radians.
- * Everything off the bit path uses cglm instead. */
+ * Column-major: element (row r, column c) is m[4·c + r]; vectors are columns. Angles in radians. */
 #ifndef PEEL_SCENE_MATRIX_H
 #define PEEL_SCENE_MATRIX_H
 

@@ -23,14 +23,14 @@ inputs=$source/tests/fuzz
 [ -f "$inputs/fuzz_$target.c" ] || fail "no tests/fuzz/fuzz_$target.c"
 command -v clang >/dev/null || fail "no clang: expected Debian's packages clang and libclang-rt-14-dev"
 
+case ${3-} in
+'') folder=$source/build-fuzz/found/$target ;;
+/*) folder=$3 ;;
+*) folder=$PWD/$3 ;;
+esac
 cd "$source" || exit 4
 [ -f build-fuzz/build.ninja ] || cmake --preset fuzz >/dev/null || fail "cmake --preset fuzz failed"
 cmake --build build-fuzz --target "fuzzer_$target" -- --quiet >/dev/null || fail "the build failed"
-folder=${3-$source/build-fuzz/found/$target}
-case $folder in
-/*) ;;
-*) folder=$PWD/$folder ;;
-esac
 found=$folder.found
 log=$folder.log
 scratch=$(mktemp -d) || exit 4
@@ -40,6 +40,14 @@ mkdir -p "$folder" "$found" || exit 4
 # Its own copy: a build while it runs must not change it.
 fuzzer=$scratch/fuzzer_$target
 cp "$source/build-fuzz/tests/fuzz/fuzzer_$target" "$fuzzer" || exit 4
+
+# Bytes of an input, and of all that are kept in the source tree.
+longest=16384
+kept=100000
+if [ "$target" = raster ]; then
+    longest=1300 # what it looks at
+    kept=20000   # each takes its time
+fi
 
 # The folders that there are, of those that inputs come from.
 starts() {
@@ -56,7 +64,7 @@ if [ "$what" = merge ]; then
     total=0
     for file in $(cd "$scratch/merged" && ls -Sr); do
         bytes=$(wc -c <"$scratch/merged/$file")
-        [ $((total + bytes)) -le 150000 ] || break
+        [ $((total + bytes)) -le $kept ] || break
         total=$((total + bytes))
         cp "$scratch/merged/$file" "$inputs/corpus/$target/$file"
     done
@@ -65,8 +73,6 @@ if [ "$what" = merge ]; then
 fi
 
 dictionary=
-longest=16384
-[ "$target" != raster ] || longest=1300 # what it looks at
 [ ! -f "$inputs/$target.dict" ] || dictionary=-dict=$inputs/$target.dict
 case $what in
 *[!0-9]* | '') fail "'$what': expected CPU seconds" ;;
