@@ -1,6 +1,7 @@
 #include "image/decode.h"
 
 #include <limits.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,10 +20,22 @@
 #define STBI_NO_STDIO
 #define STBI_NO_SIMD /* one code for all processors */
 #define STBI_FAILURE_USERMSG
+/* Zeroed: of a JPEG that lacks tables or scans stb reads what it has not written. What grows is a
+ * PNG's, and is not read before. */
+#define STBI_MALLOC(size)       calloc(1, size)
+#define STBI_REALLOC(old, size) realloc(old, size)
+#define STBI_FREE(old)          free(old)
 /* Declared and defined under different names, which a compiler warns of at the file's end. */
 #define stbi_set_unpremultiply_on_load_thread stbi__unpremultiply_on_load_thread
 #include <stb_image.h>
 #pragma GCC diagnostic pop
+
+enum {
+    PALETTE_BYTES = 3 * 256,
+    /* A JPEG stores a block of 8×8 samples in a bit at least, and a sample in each direction stands
+     * for 4 pixels at most. */
+    JPEG_PIXELS_A_BYTE = 8 * 32 * 32
+};
 
 /* "PNG" or "JPEG" by the first bytes; NULL for anything else. */
 static const char *kind_of(const unsigned char *bytes, size_t count)
@@ -85,6 +98,44 @@ static const char *jpeg_fault(const unsigned char *bytes, size_t count)
     return early;
 }
 
+/* Where a PNG's PLTE chunk begins, if it has colours stored as indices and fewer than the 256 that
+ * indices can name; 0 otherwise. Source: PNG (Third Edition), 5.3 and 11.2.2. */
+static size_t find_short_palette(const unsigned char *bytes, size_t count)
+{
+    if (count < 26 || bytes[25] != 3)
+        return 0;
+    for (size_t at = 8; count - at >= 12;) {
+        const unsigned char *chunk = bytes + at;
+        size_t length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 |
+                        (size_t)chunk[3];
+        if (length > count - at - 12)
+            return 0;
+        if (memcmp(chunk + 4, "PLTE", 4) == 0)
+            return length < PALETTE_BYTES && length % 3 == 0 ? at : 0;
+        at += 12 + length;
+    }
+    return 0;
+}
+
+/* The file with the palette that begins at `at` filled up with black, the colour of what has none:
+ * of such an index stb would take what is on the stack. It does not look at checksums. The caller
+ * frees *out. */
+static Result fill_palette(const unsigned char *bytes, size_t count, size_t at, const char *label,
+                           unsigned char **out, size_t *out_count)
+{
+    size_t length = (size_t)bytes[at + 2] << 8 | bytes[at + 3], behind = at + 8 + length;
+    unsigned char *filled = calloc(count + PALETTE_BYTES - length, 1);
+    if (!filled)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", label);
+    memcpy(filled, bytes, behind);
+    filled[at + 2] = PALETTE_BYTES >> 8;
+    filled[at + 3] = PALETTE_BYTES & 0xff;
+    memcpy(filled + at + 8 + PALETTE_BYTES, bytes + behind, count - behind);
+    *out = filled;
+    *out_count = count + PALETTE_BYTES - length;
+    return RESULT_OK;
+}
+
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
                    int *height)
 {
@@ -92,7 +143,7 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     int channels;
     if (!kind)
         return result_fail(RESULT_BAD_INPUT, "%s: expected PNG or JPEG data", label);
-    if (count > INT_MAX)
+    if (count > INT_MAX - PALETTE_BYTES)
         return result_fail(RESULT_BAD_INPUT, "%s: %zu bytes of %s, expected below 2^31", label,
                            count, kind);
     const char *fault = *kind == 'J' ? jpeg_fault(bytes, count) : NULL;
@@ -103,26 +154,50 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     if (*width < 1 || *height < 1 || *width > DECODE_MAX_PIXELS || *height > DECODE_MAX_PIXELS)
         return result_fail(RESULT_BAD_INPUT, "%s: %dx%d pixels, expected 1 to %d a side", label,
                            *width, *height, DECODE_MAX_PIXELS);
+    if (*kind == 'J' && (uint64_t)*width * (uint64_t)*height / JPEG_PIXELS_A_BYTE > count)
+        return result_fail(RESULT_BAD_INPUT,
+                           "%s: cannot decode the JPEG: %zu bytes of %dx%d pixels", label, count,
+                           *width, *height);
     return RESULT_OK;
 }
 
-Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out)
+/* Of a file whose header was found to be sound. */
+static Result load(const unsigned char *bytes, size_t count, const char *label, Image *out)
 {
     int width, height, channels;
-    *out = (Image){0};
-    Result result = decode_size(bytes, count, label, &width, &height);
-    if (result)
-        return result;
-    const char *kind = kind_of(bytes, count);
+    /* stb keeps its latest reason, and does not always give one: this is none of a real file. */
+    stbi_info_from_memory((const unsigned char *)"", 0, &width, &height, &channels);
+    const char *before = stbi_failure_reason();
     bool wide = stbi_is_16_bit_from_memory(bytes, (int)count);
     void *pixels = wide ? (void *)stbi_load_16_from_memory(bytes, (int)count, &width, &height,
                                                            &channels, STBI_rgb_alpha)
                         : (void *)stbi_load_from_memory(bytes, (int)count, &width, &height,
                                                         &channels, STBI_rgb_alpha);
+    if (!pixels && stbi_failure_reason() == before)
+        return result_fail(RESULT_BAD_INPUT,
+                           "%s: cannot decode the %s: it is broken, or 2^31 bytes or more", label,
+                           kind_of(bytes, count));
     if (!pixels)
-        return stb_failure(label, kind);
+        return stb_failure(label, kind_of(bytes, count));
     *out = (Image){width, height, wide ? FORMAT_RGBA16 : FORMAT_RGBA8, pixels};
     return RESULT_OK;
+}
+
+Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out)
+{
+    int width, height;
+    unsigned char *filled = NULL;
+    *out = (Image){0};
+    Result result = decode_size(bytes, count, label, &width, &height);
+    if (result)
+        return result;
+    size_t palette = *kind_of(bytes, count) == 'P' ? find_short_palette(bytes, count) : 0;
+    if (palette)
+        result = fill_palette(bytes, count, palette, label, &filled, &count);
+    if (result == RESULT_OK)
+        result = load(filled ? filled : bytes, count, label, out);
+    free(filled);
+    return result;
 }
 
 int decode_channels(const unsigned char *bytes, size_t count)

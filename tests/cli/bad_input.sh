@@ -171,6 +171,7 @@ refuse 'disk full' '/dev/full' compare tutorial --size 8x8 --json /dev/full
 refuse 'report below a file' 'text.gltf' compare tutorial --size 8x8 --report text.gltf/out
 refuse 'report of all methods below a file' 'text.gltf' compare tutorial --size 8x8 --method all \
     --report text.gltf/out
+refuse 'an option of a command without any' "'--nosuch' is no option" methods --nosuch
 refuse 'scene list: unknown' 'nosuch' scenes nosuch -o x.gltf
 refuse 'scene without output' '-o FILE' scenes tutorial
 refuse 'json in a missing directory' 'nosuch/x.json' compare tutorial --size 8x8 --json nosuch/x.json

@@ -153,6 +153,26 @@ START_TEST(test_overflow)
 }
 END_TEST
 
+/* Which nodes ref loses depends neither on its tiles nor on threads. */
+START_TEST(test_overflow_by_tiles)
+{
+    static Soup soup;
+    RenderDesc desc;
+    Frame first, frame;
+    make_squares(&soup, 6, &desc);
+    desc.nodes_per_pixel = 2;
+    methods_ok(pipeline_render(&soup.scene, &desc, NULL, &first));
+    ck_assert_uint_gt(first.layers.lost_to_overflow, 0);
+    for (desc.tile = TILE_MIN; desc.tile <= TILE_MAX; desc.tile *= 2) {
+        desc.threads = 1 + desc.tile / 64 % 3;
+        methods_ok(pipeline_render(&soup.scene, &desc, NULL, &frame));
+        ck_assert(same_image(&first, &frame));
+        frame_free(&frame);
+    }
+    frame_free(&first);
+}
+END_TEST
+
 /* A list that the limit on memory does not allow is refused. */
 START_TEST(test_memory_limit)
 {
@@ -277,6 +297,7 @@ int main(void)
     suite_add_tcase(suite, bits);
     tcase_add_test(tcase, test_counts);
     tcase_add_loop_test(tcase, test_overflow, 0, 2);
+    tcase_add_test(tcase, test_overflow_by_tiles);
     tcase_add_loop_test(tcase, test_memory_limit, 0, 2);
     tcase_add_loop_test(tcase, test_pass_limit, 0, 2);
     tcase_add_test(tcase, test_edges);

@@ -4,48 +4,58 @@
  * long run (tests/cross/trial.h). What is not finite must be a sum that left its format. */
 #include "fuzz.h"
 
+#include "paths.h"
 #include "raster_input.h"
 #include "trial.h"
 
 #include "compare/finite.h"
 #include "ref/pipeline/pipeline.h"
 
-static void check(TrialId trial, const Scene *scene, const RenderDesc *desc)
+/* Every stored value of every pass, and the image, unless a sum left its format. */
+static void check_finite(const Finite *finite, const Frame *frame)
 {
-    TrialFigures figures;
-    Result result = trial_run(trial, scene, desc, &figures);
-    FUZZ_CHECK(result == RESULT_OK, "%s: %s", trial_name(trial), result_message());
-    FUZZ_CHECK(figures.differences == 0, "%s: %s", trial_name(trial), figures.text);
+    const float *values = frame->final.pixels;
+    uint64_t nonfinite = finite->nonfinite;
+    for (size_t i = 0; i < 4 * (size_t)frame->final.width * (size_t)frame->final.height; i++)
+        nonfinite += !isfinite(values[i]);
+    FUZZ_CHECK(nonfinite == 0 || frame->layers.overflowed > 0, "%llu values",
+               (unsigned long long)nonfinite);
 }
 
-/* Every stored value of every pass, and the image. */
-static void check_finite(const Scene *scene, const RenderDesc *desc)
+static void check_tiles(const Scene *scene, const RenderDesc *desc, const Frame *definition)
 {
-    Finite finite = finite_before(NULL);
-    Frame frame;
-    Result result = pipeline_render(scene, desc, &finite.sink, &frame);
-    FUZZ_CHECK(result == RESULT_OK, "%s", result_message());
-    const float *values = frame.final.pixels;
-    uint64_t nonfinite = finite.nonfinite;
-    for (size_t i = 0; i < 4 * (size_t)frame.final.width * (size_t)frame.final.height; i++)
-        nonfinite += !isfinite(values[i]);
-    FUZZ_CHECK(nonfinite == 0 || frame.layers.overflowed > 0, "%llu values",
-               (unsigned long long)nonfinite);
-    frame_free(&frame);
+    Frame tile;
+    char text[PATHS_TEXT];
+    FUZZ_CHECK(paths_tile(scene, *desc, &tile) == RESULT_OK, "%s", result_message());
+    FUZZ_CHECK(!paths_frames_differ(&tile, definition, text), "%s", text);
+    frame_free(&tile);
+}
+
+static void check_truth(const Scene *scene, const RenderDesc *desc)
+{
+    TrialFigures figures;
+    FUZZ_CHECK(trial_run(TRIAL_TRUTH, scene, desc, &figures) == RESULT_OK, "%s", result_message());
+    FUZZ_CHECK(figures.differences == 0, "ref and truth: %s", figures.text);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static RasterInput input;
     raster_decode(data, size, &input);
-    if (scene_validate(&input.soup.scene) != RESULT_OK) {
+    const Scene *scene = &input.soup.scene;
+    if (scene_validate(scene) != RESULT_OK) {
         fuzz_check_message();
         return 0;
     }
-    check(TRIAL_PATHS, &input.soup.scene, &input.desc);
-    check(TRIAL_PATHS, &input.soup.scene, &input.other);
-    check_finite(&input.soup.scene, &input.desc);
+    Finite finite = finite_before(NULL);
+    Frame definition;
+    FUZZ_CHECK(pipeline_render(scene, &input.desc, &finite.sink, &definition) == RESULT_OK, "%s",
+               result_message());
+    check_finite(&finite, &definition);
+    check_tiles(scene, &input.desc, &definition);
+    check_tiles(scene, &input.other, &definition);
+    frame_free(&definition);
     if (input.against_truth)
-        check(TRIAL_TRUTH, &input.soup.scene, &input.desc);
+        check_truth(scene, &input.desc);
     return 0;
 }

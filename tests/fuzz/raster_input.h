@@ -27,6 +27,10 @@ enum {
     RASTER_WAYS
 };
 
+enum {
+    RASTER_TRIANGLES = 64 /* more than these are not looked at, for the time they take */
+};
+
 static inline int16_t raster_take_signed(FuzzBytes *bytes)
 {
     return (int16_t)(uint16_t)fuzz_take(bytes, 2);
@@ -99,7 +103,7 @@ static inline void raster_triangle(FuzzBytes *bytes, const SoupWindow *window, i
 static inline void raster_meshes(FuzzBytes *bytes, const SoupWindow *window, RasterInput *out)
 {
     float before[9] = {0};
-    while (bytes->left) {
+    for (int i = 0; bytes->left && i < RASTER_TRIANGLES; i++) {
         unsigned code = (unsigned)fuzz_take(bytes, 1);
         uint32_t mesh = code / RASTER_WAYS % SOUP_MESHES, *count = &out->counts[mesh];
         float position[9];
@@ -125,8 +129,8 @@ static inline SoupWindow raster_window(FuzzBytes *bytes, RasterInput *out)
 {
     Camera *camera = &out->soup.camera;
     RenderDesc *desc = &out->desc;
-    desc->width = 1 + (int)(fuzz_take(bytes, 1) % 80);
-    desc->height = 1 + (int)(fuzz_take(bytes, 1) % 80);
+    desc->width = 1 + (int)(fuzz_take(bytes, 1) % 72);
+    desc->height = 1 + (int)(fuzz_take(bytes, 1) % 72);
     uint64_t path = fuzz_take(bytes, 2), view = fuzz_take(bytes, 2), scale = fuzz_take(bytes, 1);
     desc->threads = 1 + (int)(path & 1);
     desc->unfused = path >> 1 & 1;
@@ -137,6 +141,10 @@ static inline SoupWindow raster_window(FuzzBytes *bytes, RasterInput *out)
     out->other.tile = TILE_MIN << (path >> 10) % 6;
     out->other.simd = (SimdChoice)((path >> 13) % SIMD_COUNT);
     out->against_truth = fuzz_take(bytes, 1) & 1;
+    if (out->against_truth) { /* which takes its time */
+        desc->width = (desc->width + 1) / 2;
+        desc->height = (desc->height + 1) / 2;
+    }
     /* Down to a near plane of 2^-124, as in soup_kinds.h. */
     double size = scale % 8 ? 1.0 : ldexp(1.0, -100 - (int)(scale >> 3) % 22);
     camera->near = 0.125 * size;
@@ -144,7 +152,8 @@ static inline SoupWindow raster_window(FuzzBytes *bytes, RasterInput *out)
     camera->yfov = 1.4;
     if (view & 2) { /* projects by 1.0f exactly; as exact as a window of a power of two is */
         camera->yfov = 1.5707963267948966;
-        desc->width = desc->height = 64;
+        desc->width = out->against_truth ? 32 : 64;
+        desc->height = 32;
     }
     if (view & 4)
         camera->world = matrix_rotate_y((double)(view >> 3 & 31) / 32.0 - 0.5);

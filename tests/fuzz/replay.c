@@ -2,7 +2,8 @@
  * are the same on every machine.
  *
  *   fuzz_NAME MUTATIONS PATH…       files, and folders of files
- *   fuzz_NAME MUTATIONS@N PATH…     of the mutations the N-th alone, from 0
+ *   fuzz_NAME @N PATH…              the N-th of the mutations alone, from 0: to standard output,
+ * too
  *
  * Where an input ends the program, the last line says which it was. */
 #include "fuzz.h"
@@ -190,7 +191,8 @@ static size_t mutate_once(Random *random, const Corpus *corpus, unsigned char *b
     }
 }
 
-static void run_mutation(const Corpus *corpus, uint64_t number)
+/* out: NULL, or where the mutated input goes, too. */
+static void run_mutation(const Corpus *corpus, uint64_t number, FILE *out)
 {
     static unsigned char bytes[MUTATED_MAX];
     Random random = random_seed(number);
@@ -201,6 +203,8 @@ static void run_mutation(const Corpus *corpus, uint64_t number)
         count = mutate_once(&random, corpus, bytes, count);
     snprintf(running, sizeof running, "fuzz: this was mutation %" PRIu64 ", of %s\n", number,
              input->path);
+    if (out && (fwrite(bytes, 1, count, out) != count || fflush(out) != 0))
+        fail("standard output: cannot write");
     run(bytes, count);
 }
 
@@ -210,12 +214,10 @@ int main(int argc, char **argv)
 {
     Corpus corpus = {0};
     char *end = "";
-    uint64_t mutations = argc > 2 ? strtoull(argv[1], &end, 10) : 0, only = 0;
-    bool one = *end == '@';
-    if (one)
-        only = strtoull(end + 1, &end, 10);
+    bool one = argc > 2 && argv[1][0] == '@';
+    uint64_t number = argc > 2 ? strtoull(argv[1] + one, &end, 10) : 0;
     if (argc < 3 || *end)
-        fail("expected MUTATIONS PATH...");
+        fail("expected MUTATIONS PATH... or @N PATH...");
     for (int i = 2; i < argc; i++)
         add_path(&corpus, argv[i]);
     if (corpus.count == 0)
@@ -225,11 +227,12 @@ int main(int argc, char **argv)
         snprintf(running, sizeof running, "fuzz: this was %s\n", corpus.inputs[i].path);
         run(corpus.inputs[i].bytes, corpus.inputs[i].count);
     }
-    for (uint64_t i = 0; i < mutations && !one; i++)
-        run_mutation(&corpus, i);
+    for (uint64_t i = 0; i < number && !one; i++)
+        run_mutation(&corpus, i, NULL);
     if (one)
-        run_mutation(&corpus, only);
-    printf("%zu inputs, %" PRIu64 " mutations\n", corpus.count, one ? 1 : mutations);
+        run_mutation(&corpus, number, stdout);
+    else
+        printf("%zu inputs, %" PRIu64 " mutations\n", corpus.count, number);
     free_corpus(&corpus);
     return EXIT_SUCCESS;
 }

@@ -24,6 +24,9 @@ START_TEST(test_message)
     ck_assert_str_eq(result_message(), "");
     ck_assert_int_eq(result_fail(RESULT_IO, "%s: line %d", "a\nb\r\nc", 3), RESULT_IO);
     ck_assert_str_eq(result_message(), "a b  c: line 3");
+    result_fail(RESULT_IO, "%s", "a\tb\033[2J\177\xc3\xa9"); /* nothing for a terminal to obey */
+    ck_assert_str_eq(result_message(), "a b?[2J?\xc3\xa9");
+    result_fail(RESULT_IO, "a b  c: line 3");
     /* The previous message can be part of the next. */
     ck_assert_int_eq(result_fail(RESULT_BAD_INPUT, "scene: %s", result_message()),
                      RESULT_BAD_INPUT);

@@ -47,6 +47,17 @@ START_TEST(palettes)
 }
 END_TEST
 
+/* Black: not what memory had there. */
+START_TEST(index_behind_the_palette)
+{
+    SmallPng png = png_begin(3, 1, 8, PNG_PALETTE);
+    png_chunk(&png, "gAMA", (uint8_t[]){0, 0, 0x27, 0x10}, 4);
+    png_chunk(&png, "PLTE", (uint8_t[]){10, 20, 30, 40, 50, 60}, 6);
+    png_end(&png, (uint8_t[]){1, 2, 255}, 3, 1);
+    decodes(&png, FORMAT_RGBA8, (uint8_t[]){40, 50, 60, 255, 0, 0, 0, 255, 0, 0, 0, 255}, 12);
+}
+END_TEST
+
 START_TEST(sixteen_bits)
 {
     static const uint8_t rgb[] = {0x12, 0x34, 0, 1, 0xff, 0xff}, grey[] = {0x80, 0x01};
@@ -152,6 +163,11 @@ START_TEST(jpeg)
     for (size_t cut = 0; cut + 1 < count; cut++)
         refused(bytes, cut, "");
     refused(bytes, count - 2, "ends too early");
+    size_t at = 0;
+    while (memcmp(bytes + at, "\xff\xc0", 2) != 0) /* the frame's header: of that many pixels */
+        ck_assert_uint_lt(++at, count - 9);
+    memcpy(bytes + at + 5, "\x40\0\x40\0", 4);
+    refused(bytes, count, "bytes of 16384x16384 pixels");
 }
 END_TEST
 
@@ -203,6 +219,7 @@ int main(void)
     tcase_add_checked_fixture(test, scratch_make, scratch_remove);
     tcase_add_test(test, channels);
     tcase_add_test(test, palettes);
+    tcase_add_test(test, index_behind_the_palette);
     tcase_add_test(test, sixteen_bits);
     tcase_add_test(test, gamma_is_ignored);
     tcase_add_test(test, encoded_pixels_come_back);

@@ -195,6 +195,20 @@ START_TEST(test_accepted)
 }
 END_TEST
 
+/* Whatever somebody wrote: what is read can be written in every form. */
+START_TEST(test_note)
+{
+    VectorHeader header;
+    uint64_t count;
+    const char *path = scratch_path("changed");
+    load(VECTOR_CSV, VECTORS_RANDOM, FORMAT_RGBA8, 2);
+    size_t size = replace("arithmetic: exact", "arithmetic:  my \"own\"\\\xe4\033 one ", 1);
+    ck_assert_int_eq(file_write(path, work, size), RESULT_OK);
+    ck_assert_int_eq(read_file(path, &header, &count), RESULT_OK);
+    ck_assert_str_eq(header.arithmetic, "my ?own???? one");
+}
+END_TEST
+
 /* Of sequences only the last pixel need be there. */
 START_TEST(test_last_only)
 {
@@ -499,6 +513,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_vectors_round_trip, 0, 6);
     tcase_add_loop_test(tcase, test_sequences_round_trip, 0, 4);
     tcase_add_test(tcase, test_accepted);
+    tcase_add_test(tcase, test_note);
     tcase_add_test(tcase, test_last_only);
     tcase_add_test(tcase, test_malformed_text);
     tcase_add_test(tcase, test_malformed_bytes);

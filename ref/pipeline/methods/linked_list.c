@@ -15,7 +15,7 @@
  *
  * The G-buffer is compact, whatever desc asks for. Memory: desc->nodes_per_pixel times the pixels,
  * or as many nodes as there are. What finds no room is lost and counted; here that is the tail in
- * the order of tiles and primitives, in gl it depends on threads.
+ * the order of pixels, from the top left, and primitives, in gl it depends on threads.
  *
  * The trace has the buffers of peel, layer K under peel.K.*, and peel.K.id (FORMAT_R32UI). */
 #include "ref/pipeline/methods/methods.h"
@@ -31,8 +31,7 @@ typedef struct Lists {
     uint32_t *nodes;
     uint64_t capacity, total; /* nodes: there is room for, and there are */
     uint32_t *heads;          /* per pixel: its first node, or the next to extract */
-    uint64_t *tile_first;     /* per tile: number of its first node; before that, how many it has */
-    uint64_t *tile_next;      /* per tile: number of the next one */
+    uint32_t *next; /* per pixel: how many nodes it has, then the number of the next one */
     NodeMaterial *materials;
     uint32_t material_count;
     GBuffer layer;
@@ -58,8 +57,7 @@ static void visit_count(void *context, const Setup *setup, int x, int y)
     const Pass *pass = stage->pass;
     const Lists *lists = stage->method;
     size_t pixel = stage_pixel(pass, x, y);
-    uint32_t tile = pass_tile_at(pass, x, y);
-    lists->tile_first[tile]++;
+    lists->next[pixel]++;
     if (!pass_hidden(pass, pass_fragment_depth(pass, setup, x, y),
                      stage_key(&stage->opaque.depth, pixel)))
         stage->fragments[pixel]++;
@@ -71,14 +69,23 @@ static void count_tile(Stage *stage, uint32_t tile)
     stage_draw(&stage->pass->transparent_bins, tile, visit_count, &visit);
 }
 
-/* From counts to numbers, so that the nodes do not depend on threads. */
-static void number_tiles(const Pass *pass, Lists *lists)
+static uint64_t count_nodes(const Lists *lists, size_t pixels)
 {
-    lists->total = 0;
-    for (uint32_t tile = 0; tile < pass->tile_count; tile++) {
-        uint64_t count = lists->tile_first[tile];
-        lists->tile_first[tile] = lists->tile_next[tile] = lists->total;
-        lists->total += count;
+    uint64_t total = 0;
+    for (size_t pixel = 0; pixel < pixels; pixel++)
+        total += lists->next[pixel];
+    return total;
+}
+
+/* From counts to numbers, so that the nodes depend neither on threads nor on tiles. Numbers for
+ * which there is no room are the capacity. */
+static void number_nodes(Lists *lists, size_t pixels)
+{
+    uint64_t first = 0;
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        uint32_t count = lists->next[pixel];
+        lists->next[pixel] = (uint32_t)(first < lists->capacity ? first : lists->capacity);
+        first += count;
     }
 }
 
@@ -119,15 +126,15 @@ static void visit_fragment(void *context, const Setup *setup, int x, int y)
     const StageVisit *visit = context;
     const Pass *pass = visit->stage->pass;
     const Lists *lists = visit->stage->method;
-    uint32_t tile = pass_tile_at(pass, x, y);
-    uint64_t number = lists->tile_next[tile]++;
+    size_t pixel = stage_pixel(pass, x, y);
+    uint32_t number = lists->next[pixel];
     if (number >= lists->capacity)
         return;
-    uint32_t *head = &lists->heads[stage_pixel(pass, x, y)];
-    uint32_t *node = node_at(lists, (uint32_t)number);
+    lists->next[pixel]++;
+    uint32_t *node = node_at(lists, number);
     fill_node(visit, setup, x, y, node);
-    node[NODE_NEXT] = *head;
-    *head = (uint32_t)number;
+    node[NODE_NEXT] = lists->heads[pixel];
+    lists->heads[pixel] = number;
 }
 
 static void list_tile(Stage *stage, uint32_t tile)
@@ -284,12 +291,15 @@ static Result build_lists(Stage *stage, Pass *pass)
 {
     Lists *lists = stage->method;
     Result result = stage_run(stage, count_tile);
+    size_t pixels = (size_t)pass->view.width * (size_t)pass->view.height;
     if (result == RESULT_OK) {
-        number_tiles(pass, lists);
+        lists->total = count_nodes(lists, pixels);
         result = make_room(pass, lists);
     }
-    if (result == RESULT_OK)
+    if (result == RESULT_OK) {
+        number_nodes(lists, pixels);
         result = stage_run(stage, list_tile);
+    }
     if (result == RESULT_OK)
         result = stage_run(stage, sort_tile);
     return result;
@@ -331,9 +341,8 @@ static Result make(const Pass *pass, Lists *out)
     size_t pixels = (size_t)pass->view.width * (size_t)pass->view.height;
     out->words = node_words(pass->scene);
     out->heads = memory_array(pixels, sizeof *out->heads);
-    out->tile_first = memory_array(pass->tile_count, sizeof *out->tile_first);
-    out->tile_next = memory_array(pass->tile_count, sizeof *out->tile_next);
-    if (!out->heads || !out->tile_first || !out->tile_next)
+    out->next = memory_array(pixels, sizeof *out->next);
+    if (!out->heads || !out->next)
         return RESULT_NO_MEMORY;
     memset(out->heads, 0xff, pixels * sizeof *out->heads);
     Result result = node_materials(pass->scene, &pass->view, &out->materials, &out->material_count);
@@ -345,7 +354,7 @@ Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame)
     Lists lists = {0};
     Stage stage;
     uint64_t heads_bytes =
-        (uint64_t)pass->view.width * (uint64_t)pass->view.height * sizeof(uint32_t);
+        2 * (uint64_t)pass->view.width * (uint64_t)pass->view.height * sizeof(uint32_t);
     Result result = stage_create(pass, trace, frame, &lists,
                                  stage_gbuffer_bytes(pass, true) + heads_bytes, &stage);
     if (result != RESULT_OK)
@@ -357,8 +366,7 @@ Result linked_list_render(Pass *pass, TraceSink *trace, Frame *frame)
     free(lists.materials);
     free(lists.nodes);
     free(lists.heads);
-    free(lists.tile_first);
-    free(lists.tile_next);
+    free(lists.next);
     stage_free(&stage);
     return result;
 }
