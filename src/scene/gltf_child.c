@@ -55,8 +55,10 @@ static Result run(void *context, int pipe)
     if (!result)
         result = child_put(pipe, bytes, count);
     if (result == RESULT_NO_MEMORY)
-        result_fail(result, "%s: loading it takes more than %zu MiB of memory (--max-memory)",
-                    load->path, load->memory >> 20);
+        result_fail(
+            result,
+            "%s: loading it takes more memory than %zu MiB (--max-memory), or than there is",
+            load->path, load->memory >> 20);
     return result;
 }
 
