@@ -174,6 +174,9 @@ Result targets_create(Context *context, const RenderDesc *desc, const Needs *nee
         result = make(desc, needs, out);
     if (result == RESULT_OK)
         result = context_check(context, "framebuffers");
+    if (result == RESULT_NO_GL)
+        result = result_fail(result, "gl: %d×%d: the driver refuses such images: %s", desc->width,
+                             desc->height, result_message());
     if (result != RESULT_OK)
         targets_destroy(out);
     return result;

@@ -113,6 +113,8 @@ triangles() {
 }
 
 largest() {
+    refuses 'the largest image, gl' '16384×16384: the driver refuses' render tutorial --with gl \
+        --size 16384x16384 --max-memory 100G -o a.png
     within tutorial --lights 1 --size 16384x16384 --max-memory 6G -o a.png
     within tutorial --lights 1 --size 16384x16384 --max-memory 6G -o a.exr
     rm -f a.exr
