@@ -153,6 +153,24 @@ START_TEST(test_overflow)
 }
 END_TEST
 
+/* Which nodes find no room does not depend on the size of tiles. */
+START_TEST(test_overflow_tiles)
+{
+    static Soup soup;
+    RenderDesc desc;
+    Frame expected, got;
+    make_squares(&soup, 6, &desc);
+    desc.nodes_per_pixel = 2;
+    methods_ok(pipeline_render(&soup.scene, &desc, NULL, &expected));
+    for (desc.tile = TILE_MIN; desc.tile <= TILE_MAX; desc.tile *= 2) {
+        methods_ok(pipeline_render(&soup.scene, &desc, NULL, &got));
+        ck_assert_msg(same_image(&got, &expected), "--tile %d", desc.tile);
+        frame_free(&got);
+    }
+    frame_free(&expected);
+}
+END_TEST
+
 /* A list that the limit on memory does not allow is refused. */
 START_TEST(test_memory_limit)
 {
@@ -277,6 +295,7 @@ int main(void)
     suite_add_tcase(suite, bits);
     tcase_add_test(tcase, test_counts);
     tcase_add_loop_test(tcase, test_overflow, 0, 2);
+    tcase_add_test(tcase, test_overflow_tiles);
     tcase_add_loop_test(tcase, test_memory_limit, 0, 2);
     tcase_add_loop_test(tcase, test_pass_limit, 0, 2);
     tcase_add_test(tcase, test_edges);

@@ -15,7 +15,8 @@
  *
  * The G-buffer is compact, whatever desc asks for. Memory: desc->nodes_per_pixel times the pixels,
  * or as many nodes as there are. What finds no room is lost and counted; here that is the tail in
- * the order of tiles and primitives, in gl it depends on threads.
+ * the order of tiles (of TILE_DEFAULT, whatever desc asks for) and primitives, in gl it depends on
+ * threads.
  *
  * The trace has the buffers of peel, layer K under peel.K.*, and peel.K.id (FORMAT_R32UI). */
 #include "ref/pipeline/methods/methods.h"
