@@ -126,13 +126,6 @@ static Result reserve_geometry(Pass *pass)
     return pass_reserve(pass, bytes);
 }
 
-/* Of lists without room for all nodes, tiles decide which are lost: always the same ones. */
-static int tile_size(const RenderDesc *desc)
-{
-    bool limited = desc->method == METHOD_LINKED_LIST && desc->nodes_per_pixel;
-    return desc->tile && !limited ? desc->tile : TILE_DEFAULT;
-}
-
 Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass *out)
 {
     *out = (Pass){
@@ -153,7 +146,7 @@ Result pass_create(const Scene *scene, const RenderDesc *desc, bool traced, Pass
     needs_derive(scene, &out->view, desc, traced || desc->mutations, &out->needs);
     for (int i = 0; i < 2; i++)
         out->stored[i] = needs_layout(&out->needs, desc, i == 1);
-    out->tile = tile_size(desc);
+    out->tile = desc->tile ? desc->tile : TILE_DEFAULT;
     uint32_t tile = (uint32_t)out->tile;
     out->tile_columns = ((uint32_t)desc->width + tile - 1) / tile;
     out->tile_count = out->tile_columns * (((uint32_t)desc->height + tile - 1) / tile);
