@@ -8,6 +8,7 @@
 #include <assimp/cimport.h>
 #include <assimp/metadata.h>
 #include <assimp/scene.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -140,8 +141,8 @@ static Result serialize(const char *path, const GltfJson *json, Document *docume
 /* Assimp's message may have several lines; ours has one. */
 static Result assimp_failure(const char *path)
 {
-    char message[512] = "";
-    strncat(message, aiGetErrorString(), sizeof message - 1);
+    char message[512];
+    snprintf(message, sizeof message, "%s", aiGetErrorString());
     message[strcspn(message, "\r\n")] = 0;
     return result_fail(RESULT_BAD_INPUT, "%s: cannot import: %s", path,
                        *message ? message : "no reason given");
