@@ -24,7 +24,11 @@ Result result_fail(Result code, const char *format, ...) __attribute__((format(p
 
 /* Static analyzers see one file at a time: to them, that code is what is returned is said here. */
 #if defined __clang_analyzer__ || defined PEEL_ANALYZER
-#define result_fail(code, ...) (result_fail(code, __VA_ARGS__), code)
+#define result_fail(code, ...)                                                                     \
+    __extension__({                                                                                \
+        (void)result_fail(code, __VA_ARGS__);                                                      \
+        (code);                                                                                    \
+    })
 #endif
 
 /* The calling thread's latest message, "" if there is none. Valid until its next result_fail. */

@@ -107,7 +107,11 @@ struct VectorReader {
 Result vector_read_fail(const VectorReader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 #if defined __clang_analyzer__ || defined PEEL_ANALYZER /* see result_fail */
-#define vector_read_fail(reader, ...) (vector_read_fail(reader, __VA_ARGS__), RESULT_BAD_INPUT)
+#define vector_read_fail(reader, ...)                                                              \
+    __extension__({                                                                                \
+        (void)vector_read_fail(reader, __VA_ARGS__);                                               \
+        RESULT_BAD_INPUT;                                                                          \
+    })
 #endif
 
 /* The start of text as it can stand in a message. */

@@ -33,7 +33,10 @@ __attribute__((unused)) static unsigned char *png_deflate(unsigned char *data, i
 #pragma GCC diagnostic ignored "-Wundef"
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#ifndef __clang_analyzer__ /* to which stb's own code is only declared */
+#ifdef __clang_analyzer__ /* to which stb's own code is only declared */
+unsigned char *stbi_write_png_to_mem(const unsigned char *pixels, int stride_bytes, int x, int y,
+                                     int n, int *out_len);
+#else
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBIW_ZLIB_COMPRESS png_deflate

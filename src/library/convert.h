@@ -19,7 +19,11 @@ PeelResult convert_color_format(const char *function, PeelFormat format, PixelFo
 /* Records the message "FUNCTION: ARGUMENT is NULL" and returns PEEL_BAD_INPUT. */
 PeelResult convert_missing(const char *function, const char *argument);
 #if defined __clang_analyzer__ || defined PEEL_ANALYZER /* see result_fail */
-#define convert_missing(...) (convert_missing(__VA_ARGS__), PEEL_BAD_INPUT)
+#define convert_missing(...)                                                                       \
+    __extension__({                                                                                \
+        (void)convert_missing(__VA_ARGS__);                                                        \
+        PEEL_BAD_INPUT;                                                                            \
+    })
 #endif
 
 #endif

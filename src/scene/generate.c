@@ -163,7 +163,8 @@ static Result generate_chain(Scene *out)
         char name[32];
         snprintf(name, sizeof name, "link %d", i);
         uint32_t material = pieces_surface(&builder, name, colors[i], 0.25f, 0.0f);
-        double x = 0.71875 * (i - LINKS / 2);
+        int place = i - LINKS / 2;
+        double x = 0.71875 * place;
         Matrix world = i % 2 ? pieces_lying(x, 0.0, 0.0) : matrix_translate(x, 0.0, 0.0);
         pieces_place(&builder, name, ring, material, &world);
     }
@@ -275,13 +276,12 @@ static void lamps_lights(Builder *builder)
 {
     Random random = random_seed(LAMPS_SEED);
     for (int i = 0; i < LAMPS_SIDE * LAMPS_SIDE; i++) {
-        int cell = (i * 27 + 36) % (LAMPS_SIDE * LAMPS_SIDE);
+        int cell = (i * 27 + 36) % (LAMPS_SIDE * LAMPS_SIDE), row = cell / LAMPS_SIDE;
         Light light = {.attenuation = {0.0f, 0.0f, 1.0f}};
         light.position[0] =
             pieces_float(2.0 * (cell % LAMPS_SIDE) - 7.0 + random_range(&random, -0.5, 0.5));
         light.position[1] = pieces_float(random_range(&random, 0.5, 1.25));
-        light.position[2] =
-            pieces_float(2.0 * (cell / LAMPS_SIDE) - 7.0 + random_range(&random, -0.5, 0.5));
+        light.position[2] = pieces_float(2.0 * row - 7.0 + random_range(&random, -0.5, 0.5));
         for (int k = 0; k < 3; k++)
             light.color[k] = k == i % 3 ? 4.0f : (float)(3.0 * random_unit(&random));
         light.range = (float)random_range(&random, 1.25, 2.5);

@@ -9,6 +9,7 @@
 #include <assimp/cimport.h>
 #include <assimp/metadata.h>
 #include <assimp/scene.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -146,8 +147,8 @@ static Result serialize(const char *path, const GltfJson *json, Document *docume
 /* Assimp's message may have several lines; ours has one. */
 static Result assimp_failure(const char *path)
 {
-    char message[512] = "";
-    strncat(message, aiGetErrorString(), sizeof message - 1);
+    char message[512];
+    snprintf(message, sizeof message, "%s", aiGetErrorString());
     message[strcspn(message, "\r\n")] = 0;
     if (strstr(message, "std::bad_alloc"))
         return result_fail(RESULT_NO_MEMORY, "%s: out of memory for Assimp", path);

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "scene/gltf_file.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -156,6 +157,7 @@ Result gltf_bytes_uv(GltfBytes *bytes, size_t accessor, float **out)
     Result result = read_view(bytes, number, &span);
     if (result)
         return result;
+    assert(span.bytes || count == 0); /* by the check of lengths */
     float *uv = memory_array(count, 2 * sizeof *uv);
     if (!uv)
         return RESULT_NO_MEMORY;

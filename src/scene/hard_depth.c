@@ -163,13 +163,14 @@ Result hard_scenes_bias(Scene *out)
 static void put_pairs(Builder *builder)
 {
     double z = 5e-4;
-    for (int i = 0; i < 8; i++, z *= 10.0) {
+    for (int i = 0; i < 8; i++) {
         HardQuad quads[2] = {hard_kit_pane(-pieces_float(z), 2.0 / 3.0),
                              hard_kit_pane(-pieces_float(1.01 * z), 2.0 / 3.0)};
         for (int k = 1; k >= 0; k--) {
             uint32_t mesh = hard_kit_quads(builder, &quads[k], 1);
             hard_kit_put(builder, mesh, hard_kit_tint(builder, 2 * i + k, 0.25f));
         }
+        z *= 10.0;
     }
 }
 

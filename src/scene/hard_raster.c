@@ -112,7 +112,7 @@ static Result make_fan(Mesh *out)
                                   hub[1] + radius * matrix_sin(angle), hub[2]};
         for (size_t k = 0; k < 3; k++) {
             out->position[3 * i + k] = (float)(i < FAN ? corner[k] : hub[k]);
-            out->normal[3 * i + k] = k == 2;
+            out->normal[3 * i + k] = k == 2 ? 1.0f : 0.0f;
         }
         if (i == FAN)
             break;

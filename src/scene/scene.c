@@ -288,24 +288,24 @@ static Result check_light(size_t number, const Light *light)
     return RESULT_OK;
 }
 
-Result scene_validate_camera(const Scene *scene, size_t number)
+Result scene_validate_camera(const Scene *scene, size_t camera)
 {
-    const Camera *camera = &scene->cameras[number];
+    const Camera *given = &scene->cameras[camera];
     Matrix view;
-    if (!camera->name)
-        return result_fail(RESULT_BAD_INPUT, "camera %zu: no name", number);
-    if (!(camera->yfov > 0.0 && camera->yfov < PI))
+    if (!given->name)
+        return result_fail(RESULT_BAD_INPUT, "camera %zu: no name", camera);
+    if (!(given->yfov > 0.0 && given->yfov < PI))
         return result_fail(RESULT_BAD_INPUT,
                            "camera %zu: vertical field of view is %g radians, expected between 0 "
                            "and pi",
-                           number, camera->yfov);
-    if (!(camera->near > 0.0 && isfinite(camera->near) && camera->far > camera->near))
+                           camera, given->yfov);
+    if (!(given->near > 0.0 && isfinite(given->near) && given->far > given->near))
         return result_fail(RESULT_BAD_INPUT,
-                           "camera %zu: near %g and far %g, expected 0 < near < far", number,
-                           camera->near, camera->far);
-    Result result = check_matrix("camera", number, &camera->world);
-    if (!result && !matrix_invert_affine(&camera->world, &view))
-        return result_fail(RESULT_BAD_INPUT, "camera %zu: world matrix has no inverse", number);
+                           "camera %zu: near %g and far %g, expected 0 < near < far", camera,
+                           given->near, given->far);
+    Result result = check_matrix("camera", camera, &given->world);
+    if (!result && !matrix_invert_affine(&given->world, &view))
+        return result_fail(RESULT_BAD_INPUT, "camera %zu: world matrix has no inverse", camera);
     return result;
 }
 
