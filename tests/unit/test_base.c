@@ -11,9 +11,11 @@
 
 #include <fcntl.h>
 #include <pthread.h>
+#include <pty.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <time.h>
 #include <unistd.h>
 
 /* ---- result ------------------------------------------------------------------------------------
@@ -121,6 +123,47 @@ START_TEST(test_stderr)
     ck_assert_str_eq(captured(warn_enabled), "peel: warning: it has 2 lines\n");
     ck_assert_str_eq(captured(warn), "");
     ck_assert_str_eq(captured(progress), ""); /* not a terminal */
+}
+END_TEST
+
+/* Until a line may be drawn again. */
+static void pause_briefly(void)
+{
+    nanosleep(&(struct timespec){.tv_nsec = 110000000}, NULL);
+}
+
+static void progress_of_both_kinds(void)
+{
+    progress_add(); /* nothing has begun */
+    progress_begin("peels", 4);
+    pause_briefly();
+    progress_add();
+    progress_end();
+    progress_end();
+    progress_context("chain");
+    progress_begin("peels", 0);
+    pause_briefly();
+    progress_step(7);
+    progress_end();
+}
+
+START_TEST(test_progress_on_a_terminal)
+{
+    char text[512];
+    int terminal, stderr_end, saved = dup(STDERR_FILENO);
+    size_t size = 0;
+    ck_assert_int_eq(openpty(&terminal, &stderr_end, NULL, NULL, NULL), 0);
+    dup2(stderr_end, STDERR_FILENO);
+    close(stderr_end);
+    progress_of_both_kinds();
+    dup2(saved, STDERR_FILENO); /* no one has the terminal now: it ends once it is read */
+    close(saved);
+    for (ssize_t got = 1; got > 0 && size<sizeof text - 1; size += got> 0 ? (size_t)got : 0)
+        got = read(terminal, text + size, sizeof text - 1 - size);
+    close(terminal);
+    text[size] = '\0';
+    ck_assert_str_eq(text, "\r\033[Kpeels   0%\r\033[Kpeels  25%\r\033[K"
+                           "\r\033[Kchain: peels\r\033[Kchain: peels, step 7\r\033[K");
 }
 END_TEST
 
@@ -313,6 +356,7 @@ int main(void)
     tcase_add_test(tcase, test_text);
     tcase_add_test(tcase, test_message_per_thread);
     tcase_add_test(tcase, test_stderr);
+    tcase_add_test(tcase, test_progress_on_a_terminal);
     tcase_add_test(tcase, test_memory_array);
     tcase_add_test(tcase, test_memory_grow);
     tcase_add_loop_test(tcase, test_pool_runs_each_once, 1, 9);
