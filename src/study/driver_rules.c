@@ -4,6 +4,8 @@
 #define NUMBERS_SETS (INPUT_UNIT | INPUT_SIGNED | INPUT_WIDE)
 #define ODD_SETS     (INPUT_SPECIAL | INPUT_BITS | INPUT_DENORMAL)
 
+/* Arguments are initializers, which take no parentheses where they are in braces.
+ * NOLINTBEGIN(bugprone-macro-parentheses) */
 /* Single operations. */
 #define OPERATION(id_, what_, operation_, sets_)                                                   \
     {                                                                                              \
@@ -52,6 +54,7 @@
     {                                                                                              \
         .id = id_, .what = what_, .section = "Not tested", .reason = reason_                       \
     }
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 static const Rule rules[] = {
     OPERATION("add", "a + b", OPERATION_ADD, NUMBERS_SETS),

@@ -5,6 +5,7 @@
 #include "base/pool.h"
 #include "base/progress.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 enum {
@@ -155,6 +156,7 @@ static Result measure_width(Job *job, Pool *pool, double stretch_ms, RooflineWid
 /* With the widest kernels; written first, so that every page is there. */
 static Result measure_memory(Job *job, Pool *pool, double stretch_ms, RooflineReport *out)
 {
+    assert(job->kernels); /* at least the scalar ones were measured */
     int threads = pool_threads(pool);
     size_t bytes = (size_t)BUFFER_BYTES / (size_t)threads;
     bytes = bytes > BUFFER_LEAST ? bytes : BUFFER_LEAST;
