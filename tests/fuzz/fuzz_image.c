@@ -54,7 +54,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         FUZZ_CHECK(!image.pixels, "pixels after a failure");
         return 0;
     }
-    int channels = decode_channels(data, size);
+    int channels;
+    FUZZ_CHECK(decode_channels(data, size, "input", &channels) == RESULT_OK, "its channels");
     FUZZ_CHECK(image.width == width && image.height == height, "%dx%d, the header has %dx%d",
                image.width, image.height, width, height);
     FUZZ_CHECK(image.format == FORMAT_RGBA8 || image.format == FORMAT_RGBA16, "format %d",
