@@ -14,7 +14,8 @@
 
 static Result fail_write(const char *path, int error)
 {
-    return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
+    return result_fail(error == ENOMEM ? RESULT_NO_MEMORY : RESULT_IO,
+                       "%s: cannot write this file: %s", path, strerror(error));
 }
 
 /* The temporaries of open writers. More than there are slots are merely not cleaned up. */

@@ -34,7 +34,7 @@ writing() {
     process=$!
     check 'a temporary file is seen' wait_for writes
     kill -"$1" $process
-    wait $process 2>output
+    wait "$process" 2>output
     code=$?
     check "by $1: exit $code, expected $2" test $code = "$2"
     check "by $1: no trace" test ! -e got/trace.exr
@@ -69,15 +69,15 @@ try() {
     (cd whole && exec "$peel" "$@") >output 2>&1
     took=$((($(date +%s%N) - started) / 1000000))
     for moment in 1 2 3 4 5 6 7 8 9; do
-        signal=$(echo TERM INT HUP KILL TERM INT HUP KILL TERM | cut -d ' ' -f $moment)
+        signal=$(echo TERM INT HUP KILL TERM INT HUP KILL TERM | cut -d ' ' -f "$moment")
         rm -rf got && mkdir got
         (cd got && exec $heeding "$peel" "$@") >output 2>&1 &
         process=$!
         after=$(printf '%06d' $((took * moment / 10)))
         sleep "${after%???}.${after#???}"
-        kill -$signal $process 2>/dev/null
-        wait $process 2>/dev/null
-        [ $signal != KILL ] || find got -name '.peel-*' -delete
+        kill "-$signal" "$process" 2>/dev/null
+        wait "$process" 2>/dev/null
+        [ "$signal" != KILL ] || find got -name '.peel-*' -delete
         left=$(leftovers "$work/got" "$work/whole")
         check "$signal after $after ms: $*: $left" test -z "$left"
     done

@@ -63,7 +63,7 @@ sizes() {
 many_layers() {
     "$many" layers "$1" layers.glb
     for with in $2; do
-        exits 0 "$1 layers, $with" "$peel" render layers.glb --size 6x6 --with $with -o $with.exr
+        exits 0 "$1 layers, $with" "$peel" render layers.glb --size 6x6 --with "$with" -o "$with.exr"
         has "$1 layers, $with" ", $3 peels" output
     done
 }

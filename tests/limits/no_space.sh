@@ -19,7 +19,7 @@ judge() {
     if [ $code = 4 ] && [ "$lines" = 1 ] && [ -z "$left" ] && [ "$(printf '%s\n' "$text" | wc -l)" = 1 ]; then
         passed=$((passed + 1))
         refused=$((refused + 1))
-    elif [ $code = $whole_code ] && [ -z "$left" ]; then
+    elif [ $code = "$whole_code" ] && [ -z "$left" ]; then
         passed=$((passed + 1))
     else
         echo "FAIL $what: peel $*: exit $code, '$text', left behind: $left"
@@ -30,7 +30,7 @@ judge() {
 limited() {
     rm -rf got && mkdir got
     for blocks in ${all:+0 2 16 64} 1; do
-        text=$( (ulimit -f $blocks && cd got && exec "$peel" "$@") 2>&1 >/dev/null)
+        text=$( (ulimit -f "$blocks" && cd got && exec "$peel" "$@") 2>&1 >/dev/null)
         code=$?
         judge "files of at most $blocks blocks" "$@"
     done
@@ -39,7 +39,7 @@ limited() {
 full() {
     for room in ${all:+16k 64k 256k} 4k; do
         rm -rf got && mkdir got
-        mount -t tmpfs -o size=$room none got || return
+        mount -t tmpfs -o size="$room" none got || return
         text=$( (cd got && exec "$peel" "$@") 2>&1 >/dev/null)
         code=$?
         judge "a file system of $room" "$@"

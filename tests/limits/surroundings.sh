@@ -2,6 +2,7 @@
 # Surroundings that are not what a program hopes for: closed and broken streams, folders that may not
 # be written, files that may not be read or are none, no threads, little memory and stack, another
 # language and time zone. Usage: surroundings.sh PEEL SOURCE_DIR
+# shellcheck disable=SC2016 # the inner shells'
 set -u
 peel=$1
 source=$2
@@ -71,6 +72,7 @@ kinds() {
 }
 
 # As a user without rights.
+# shellcheck disable=SC2086 # $as is a list of words
 unprivileged() {
     as=
     chmod 755 .
@@ -99,14 +101,13 @@ unprivileged() {
         'scenes tutorial --export ../closed/a' \
         'hard --export ../closed/a' \
         'blend vectors --set random --count 3 -o ../closed/a.csv'; do
-        # shellcheck disable=SC2086 # words
         refuses 'a folder that may not be written' '../closed/a.*Permission denied' $as ../program $output
     done
     # Threads: those of other users' processes do not count.
     for most in 0 3; do
         for with in ref gl truth; do
-            does "at most $most more processes: $with" $as prlimit --nproc=$most ../program render \
-                tutorial --size 16x16 --threads 4 --with $with -o $with.exr
+            does "at most $most more processes: $with" $as prlimit --nproc="$most" ../program render \
+                tutorial --size 16x16 --threads 4 --with "$with" -o "$with.exr"
         done
         check 'the same bits' cmp ref.exr gl.exr
     done

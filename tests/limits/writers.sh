@@ -1,3 +1,4 @@
+# shellcheck shell=sh disable=SC2154 # peel is the reader's
 # For the scripts beside it, which read it first, in a scratch folder, with $peel: every command
 # that writes, and what it may leave behind.
 

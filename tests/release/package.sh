@@ -3,6 +3,7 @@
 # they depend on, used, removed. Takes minutes, root, and a network.
 # Usage: package.sh PEEL SOURCE_DIR [MIRROR]
 # Exit code 77: cannot be done here, and why.
+# shellcheck disable=SC2016 # the inner shells'
 set -u
 source=$2
 mirror=${3-http://deb.debian.org/debian}

@@ -338,7 +338,7 @@ START_TEST(test_truncated)
         ck_assert_ptr_nonnull(strstr(result_message(), bad));
     }
     ck_assert_int_eq(refuse(scratch_path("none.exr"), MEMORY), RESULT_IO);
-    ck_assert_int_eq(refuse(scratch_directory, MEMORY), RESULT_IO);
+    ck_assert_int_eq(refuse(scratch_directory, MEMORY), RESULT_BAD_INPUT);
     fflush(stderr);
     ck_assert_uint_eq(scratch_read(scratch_path("stderr"), bytes, sizeof bytes), 0);
 }
