@@ -69,7 +69,7 @@ exits 0 'no colours in a pipe' test "$(tr -cd '\033' <output | wc -c)" -eq 0
 exits 0 '--width' "$peel" blend eval --width 150 --arithmetic exact,driver 1,0,0,1/2
 cp output wide
 exits 0 'COLUMNS' env COLUMNS=150 "$peel" blend eval --arithmetic exact,driver 1,0,0,1/2
-exits 0 'COLUMNS is as --width' cmp output wide
+check 'COLUMNS is as --width' cmp output wide
 if command -v script >/dev/null; then
     exits 0 'a terminal' env TERM=xterm NO_COLOR= script -qec "'$peel' blend eval 1,0,0,1/3" \
         /dev/null
