@@ -150,7 +150,12 @@ static FILE *open_temporary(void)
 {
     const char *directory = getenv("TMPDIR");
     int descriptor = directory ? open(directory, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600) : -1;
-    return descriptor >= 0 ? fdopen(descriptor, "w+b") : tmpfile();
+    if (descriptor < 0)
+        return tmpfile();
+    FILE *file = fdopen(descriptor, "w+b");
+    if (!file)
+        close(descriptor);
+    return file;
 }
 
 static Result spill(TraceStore *store, size_t bytes, TileRef *ref)
