@@ -220,7 +220,7 @@ static int check_channel(const Arithmetic *a, const BlendEquation *e, PixelForma
 START_TEST(test_rationals)
 {
     const char *wanted = getenv("PEEL_TEST_COUNT");
-    int count = wanted ? atoi(wanted) : 60000, compared = 0;
+    int count = wanted ? atoi(wanted) : testing_samples(60000), compared = 0;
     PixelFormat format = formats[_i];
     Random random = random_seed(700 + (uint64_t)_i);
     for (int k = 0; k < count; k++) {
@@ -277,7 +277,7 @@ START_TEST(test_processor)
     bool flush = _i & 1, fused = _i & 2;
     Arithmetic a = {.kind = ARITHMETIC_STEPS, .flush = flush, .fused = fused};
     Random random = random_seed(31 + (uint64_t)_i);
-    for (int k = 0; k < 200000; k++) {
+    for (int k = 0; k < testing_samples(200000); k++) {
         float source[1][4], pixel[4], expected[4];
         for (int i = 0; i < 4; i++) {
             source[0][i] = any_float_bits(&random);
@@ -396,7 +396,7 @@ START_TEST(test_blocks)
     Random random = random_seed(12);
     for (size_t n = 0; n < arithmetic_count(); n++)
         for (int f = 0; f < FORMATS; f++)
-            for (int k = 0; k < EQUATION_COUNT + 30; k++) {
+            for (int k = 0; k < EQUATION_COUNT + testing_samples(30); k++) {
                 const Arithmetic *a = &arithmetic_info(n)->arithmetic;
                 BlendEquation e = k < EQUATION_COUNT ? equation_info((EquationId)k)->equation
                                                      : operands_equation(&random);

@@ -40,7 +40,7 @@ START_TEST(test_octahedral)
 {
     Random random = random_seed(7);
     double worst = 0.0;
-    for (int i = 0; i < 2000000; i++) {
+    for (int i = 0; i < testing_samples(2000000); i++) {
         double v[3], square = 0.0;
         for (int k = 0; k < 3; k++) {
             v[k] = random_range(&random, -1.0, 1.0);
@@ -121,7 +121,7 @@ START_TEST(test_position)
             ck_assert_int_eq(view_build(&scene, &desc, &view), RESULT_OK);
             Random random = random_seed((uint64_t)range + 1);
             uint32_t mode = op_enter();
-            for (int i = 0; i < 100000; i++) {
+            for (int i = 0; i < testing_samples(100000); i++) {
                 double distance = near * pow(1000.0, random_unit(&random));
                 double error = position_error(&view, distance, (int)(random_bits(&random) % 640),
                                               (int)(random_bits(&random) % 333));

@@ -132,7 +132,7 @@ START_TEST(test_exact)
     PixelFormat format = formats[_i];
     mpq_t expected;
     mpq_init(expected);
-    for (uint64_t i = 0; i < 2400; i += i < 200 ? 1 : 61) {
+    for (uint64_t i = 0; i < 2400; i += i < 200 ? 1 : 61 * TESTING_SHARE) {
         int layers = make(format, i);
         sequence_exact(format, layers, (const float(*)[4])source, exact);
         sequence_round(format, exact, pixels);
@@ -183,7 +183,7 @@ START_TEST(test_bound_holds_right_arithmetics)
     size_t size = format_pixel_bytes(format);
     const BlendEquation *under = &equation_info(EQUATION_UNDER)->equation;
     uint32_t checked = 0;
-    for (uint64_t i = 0; i < SEQUENCE_COUNT; i += i < 100 ? 1 : 59) {
+    for (uint64_t i = 0; i < SEQUENCE_COUNT; i += i < 100 ? 1 : 59 * TESTING_SHARE) {
         int layers = make(format, i);
         const float(*sources)[4] = (const float(*)[4])source;
         sequence_bound(format, layers, sources, low, high);
@@ -249,7 +249,7 @@ START_TEST(test_bound_holds_faithful_ones)
     uint32_t max = format_info(format)->unorm_max;
     static const int precisions[][3] = {{11, 24, 50}, {24, 30, 50}, {11, 24, 50}, {24, 30, 50}};
     Random random = random_seed(9);
-    for (uint64_t i = 0; i < SEQUENCE_COUNT; i += i < 300 ? 1 : 29) {
+    for (uint64_t i = 0; i < SEQUENCE_COUNT; i += i < 300 ? 1 : 29 * TESTING_SHARE) {
         int layers = make(format, i);
         sequence_bound(format, layers, (const float(*)[4])source, low, high);
         for (int run = 0; run < 12; run++) {
@@ -313,7 +313,7 @@ START_TEST(test_bound_is_no_excuse)
     PixelFormat format = formats[_i];
     size_t size = format_pixel_bytes(format);
     uint32_t outside = 0;
-    for (uint64_t i = 0; i < SEQUENCE_COUNT; i += 3) {
+    for (uint64_t i = 0; i < SEQUENCE_COUNT; i += (uint64_t)3 * TESTING_SHARE) {
         int layers = make(format, i);
         const float(*sources)[4] = (const float(*)[4])source;
         sequence_bound(format, layers, sources, low, high);
@@ -327,7 +327,7 @@ START_TEST(test_bound_is_no_excuse)
                      sequence_inside(format, pixels + (size_t)(layers - 1) * size, c, low, high);
         outside += !inside;
     }
-    ck_assert_uint_ge(outside, SEQUENCE_COUNT / 3 / 2);
+    ck_assert_uint_ge(outside, SEQUENCE_COUNT / 3 / TESTING_SHARE / 2);
 }
 END_TEST
 

@@ -282,7 +282,7 @@ START_TEST(test_scenes)
     Random random = random_seed(7);
     ck_assert(generate_find(names[_i])->generate(&scene) == RESULT_OK);
     RenderDesc desc = {.width = SIZE, .height = SIZE, .lights = 4, .back_light = _i % 2};
-    check_scene(&scene, desc, &random, 150, &totals);
+    check_scene(&scene, desc, &random, testing_samples(150), &totals);
     scene_free(&scene);
     print_totals(names[_i], &totals);
     ck_assert_uint_le(totals.unbounded, totals.values / 50);
@@ -294,7 +294,7 @@ START_TEST(test_soups)
 {
     static RandomSoup soup_of_kind;
     Totals totals = {0};
-    for (uint64_t seed = 1; seed <= 60; seed++) {
+    for (uint64_t seed = 1; seed <= (uint64_t)testing_samples(60); seed++) {
         SoupKind kind = (SoupKind)(seed % SOUP_KINDS);
         Random random = random_seed(seed);
         RenderDesc desc = {.width = SIZE,

@@ -321,7 +321,7 @@ END_TEST
 START_TEST(test_fuzz)
 {
     const char *wanted = getenv("PEEL_TEST_COUNT");
-    int runs = wanted ? atoi(wanted) : 3000;
+    int runs = wanted ? atoi(wanted) : testing_samples(3000);
     static const VectorSet sets[] = {VECTORS_DIRECTED, VECTORS_RANDOM, VECTORS_SEQUENCES};
     Random random = random_seed(1234 + (uint64_t)_i);
     size_t size = 0;

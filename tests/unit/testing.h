@@ -14,6 +14,15 @@ __attribute__((constructor)) static void testing_be_patient(void)
     setenv("CK_DEFAULT_TIMEOUT", "120", 0);
 }
 
+/* How many of so many samples are taken: all, or where the build is slow (PEEL_PATIENCE) a part. */
+#ifndef TESTING_SHARE
+#define TESTING_SHARE 1
+#endif
+static inline int testing_samples(int count)
+{
+    return (count + TESTING_SHARE - 1) / TESTING_SHARE;
+}
+
 static inline uint32_t testing_bits(float x)
 {
     uint32_t bits;
