@@ -331,6 +331,10 @@ static inline LanesMask lanes_int_less(LanesInt a, LanesInt b)
 #elif LANES == 4
     return _mm_cmplt_epi32(a, b);
 #elif LANES == 8
+#if defined(__AVX512BW__) && !defined(__clang__)
+    /* gcc 12.2 takes a < INT32_MAX ? a : x for its opposite, unless the constant is hidden. */
+    __asm__("" : "+x"(b));
+#endif
     return _mm256_cmpgt_epi32(b, a);
 #else
     return _mm512_cmplt_epi32_mask(a, b);

@@ -16,13 +16,16 @@ typedef struct BatchTable {
     /* skip: as shade_batch; else every light. */
     void (*shade)(const View *view, const ShadeForm *form, bool skip, const Texel *texels,
                   float (*source)[4]);
+    /* Per lane a, or other where a is INT32_MAX. */
+    void (*kept)(const int32_t *a, int32_t other, int32_t *out);
     /* How many of at most 128 lights are not skipped. */
     int (*select)(const View *view, const ShadeForm *form, const Texel *texels);
     void (*resolve)(const View *view, bool fused, const float (*accum)[4], const float *weight,
                     float (*final)[4], uint8_t (*display)[4]);
 } BatchTable;
 
-extern const BatchTable batch_scalar, batch_sse2, batch_avx2, batch_avx512;
+/* batch_avx2_for_512: AVX2's, compiled for a processor that has more, as with -march=native. */
+extern const BatchTable batch_scalar, batch_sse2, batch_avx2, batch_avx2_for_512, batch_avx512;
 
 #endif
 
@@ -75,6 +78,13 @@ static void table_shade(const View *view, const ShadeForm *form, bool skip, cons
             source[lane][i] = batch.source[i][lane];
 }
 
+static void table_kept(const int32_t *a, int32_t other, int32_t *out)
+{
+    LanesInt value = lanes_int_load(a);
+    LanesMask less = lanes_int_less(value, lanes_int_all(INT32_MAX));
+    lanes_int_store(out, lanes_int_select(less, value, lanes_int_all(other)));
+}
+
 static int table_select(const View *view, const ShadeForm *form, const Texel *texels)
 {
     ShadeBatch batch;
@@ -99,7 +109,7 @@ static void table_resolve(const View *view, bool fused, const float (*accum)[4],
             final[lane][i] = out[i][lane];
 }
 
-const BatchTable BATCH_TABLE = {LANES,     table_fma,   table_exp2,   table_log2,
-                                table_pow, table_shade, table_select, table_resolve};
+const BatchTable BATCH_TABLE = {LANES,       table_fma,  table_exp2,   table_log2,   table_pow,
+                                table_shade, table_kept, table_select, table_resolve};
 
 #endif

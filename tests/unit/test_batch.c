@@ -13,7 +13,8 @@
 enum {
     WIDEST = 16,
     CASES = 4000, /* batches of the widest */
-    LIGHTS = 140
+    LIGHTS = 140,
+    TABLES = 5 /* at most */
 };
 
 static const float hostile[] = {0.0f,     -0.0f, NAN,      INFINITY, -INFINITY, 0x1p-149f,
@@ -22,7 +23,7 @@ static const float hostile[] = {0.0f,     -0.0f, NAN,      INFINITY, -INFINITY, 
                                 1.00001f, 1e-10f};
 
 /* The widths that this processor has, scalar first. */
-static int tables(const BatchTable *out[4])
+static int tables(const BatchTable *out[TABLES])
 {
     int count = 0;
     out[count++] = &batch_scalar;
@@ -30,6 +31,9 @@ static int tables(const BatchTable *out[4])
     out[count++] = &batch_sse2;
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
         out[count++] = &batch_avx2;
+    if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("fma"))
+        out[count++] = &batch_avx2_for_512;
     if (__builtin_cpu_supports("avx512f"))
         out[count++] = &batch_avx512;
 #endif
@@ -83,7 +87,7 @@ START_TEST(test_functions)
 {
     const char *asked = getenv("PEEL_TEST_STRIDE");
     uint64_t stride = asked ? strtoull(asked, NULL, 10) : 4093;
-    const BatchTable *table[4];
+    const BatchTable *table[TABLES];
     int count = tables(table);
     uint32_t saved = op_enter();
     for (uint64_t at = 0; at * stride <= UINT32_MAX;) {
@@ -95,6 +99,22 @@ START_TEST(test_functions)
         }
     }
     op_leave(saved);
+}
+END_TEST
+
+START_TEST(test_kept)
+{
+    static const int32_t in[WIDEST] = {
+        1, -1, 0, INT32_MAX, INT32_MIN, INT32_MAX - 1, 7, INT32_MAX, 0x3f800000, INT32_MAX, 5};
+    const BatchTable *table[TABLES];
+    int count = tables(table);
+    for (int k = 0; k < count; k++) {
+        int32_t out[WIDEST];
+        for (int i = 0; i < WIDEST; i += table[k]->lanes)
+            table[k]->kept(in + i, 99, out + i);
+        for (int i = 0; i < WIDEST; i++)
+            ck_assert_int_eq(out[i], in[i] == INT32_MAX ? 99 : in[i]);
+    }
 }
 END_TEST
 
@@ -110,7 +130,7 @@ static float pick_factor(Random *random)
 
 START_TEST(test_fma)
 {
-    const BatchTable *table[4];
+    const BatchTable *table[TABLES];
     int count = tables(table);
     Random random = random_seed(8);
     uint32_t saved = op_enter();
@@ -280,7 +300,7 @@ static void check_case(const BatchTable *table, const Case *made, bool skip, uin
 
 START_TEST(test_shade)
 {
-    const BatchTable *table[4];
+    const BatchTable *table[TABLES];
     int count = tables(table);
     uint64_t lights = 0, lit = 0;
     uint32_t saved = op_enter();
@@ -305,7 +325,7 @@ END_TEST
  * something speaks against it, and those too far. */
 START_TEST(test_select)
 {
-    const BatchTable *table[4];
+    const BatchTable *table[TABLES];
     int count = tables(table);
     static const struct {
         const char *name;
@@ -377,7 +397,7 @@ static void check_resolve(const BatchTable *table, const View *view, bool fused,
 
 START_TEST(test_resolve)
 {
-    const BatchTable *table[4];
+    const BatchTable *table[TABLES];
     int count = tables(table);
     Random random = random_seed(7);
     uint32_t saved = op_enter();
@@ -406,6 +426,7 @@ int main(void)
     Suite *suite = suite_create("batch");
     TCase *tests = tcase_create("batch");
     tcase_set_timeout(tests, 1800);
+    tcase_add_test(tests, test_kept);
     tcase_add_test(tests, test_fma);
     tcase_add_test(tests, test_functions);
     tcase_add_test(tests, test_shade);

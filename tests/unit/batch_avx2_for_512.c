@@ -1,0 +1,3 @@
+#define LANES       8
+#define BATCH_TABLE batch_avx2_for_512
+#include "batch_table.h"
