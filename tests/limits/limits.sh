@@ -1,13 +1,13 @@
 #!/bin/sh
 # The largest that Peel takes: images, layers, lights, triangles, memory as it was stated, and what
 # it refuses at once. Usage: LIMITS=FOLDER limits.sh PEEL SOURCE_DIR [all]
-# FOLDER: of the programs many and peak. all: also what takes minutes and 6 GiB.
+# FOLDER: of the programs many and limited. all: also what takes minutes and 6 GiB.
 set -u
 peel=$1
 source=$2
 all=${3-}
 many=$LIMITS/many
-peak=$LIMITS/peak
+limited=$LIMITS/limited
 . "$source/tests/cli/checks.sh"
 
 # refuses WHAT PATTERN ARGUMENT...: exit 4 and one line with PATTERN, before any work.
@@ -22,12 +22,19 @@ refuses() {
     check "$what: one line" test "$(printf '%s\n' "$text" | wc -l)" = 1
 }
 
-# measured ARGUMENT...: of peel render; sets stated and held, in KiB.
+# rendered WHAT ARGUMENT...: by peel render, which exits with 0; sets held, in KiB.
+rendered() {
+    what=$1
+    shift
+    exits 0 "$what" "$limited" record 0 0 "$peel" render "$@"
+    held=$(sed 's/.* //' record)
+}
+
+# measured ARGUMENT...: rendered; sets stated, too, in KiB.
 measured() {
-    exits 0 "peel $*" "$peak" "$peel" render "$@"
+    rendered "peel $*" "$@"
     stated=$(sed -n 's/.*, \([0-9]*\)[.][0-9]* MiB$/\1/p' output)
     stated=$((${stated:-0} * 1024))
-    held=$(tail -1 output)
 }
 
 # within ARGUMENT...: what was stated is enough, beside what the program has of its own, and not
@@ -103,9 +110,9 @@ all_layers() {
 triangles() {
     "$many" triangles 10000000 triangles.glb
     for with in ref gl truth; do
-        exits 0 "10,000,000 triangles, $with" "$peak" "$peel" render triangles.glb --size 256x256 \
-            --with $with -o $with.exr
-        echo "10,000,000 triangles, $with: $(tail -1 output) KiB held"
+        rendered "10,000,000 triangles, $with" triangles.glb --size 256x256 --with $with \
+            -o $with.exr
+        echo "10,000,000 triangles, $with: $held KiB held"
     done
     check '10,000,000 triangles: the same bits' cmp ref.exr gl.exr
     refuses 'triangles beyond the memory' 'max-memory' render triangles.glb --size 8x8 \

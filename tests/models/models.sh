@@ -55,8 +55,8 @@ violation() {
 run() {
     rm -f out.png
     "$limited" "$work/record" 20 1024 "$peel" "$@" >"$work/out" 2>"$work/err" </dev/null
-    read -r code ms clock_ms mebibytes <"$work/record"
-    echo "$ms $clock_ms $mebibytes $1 $name" >>"$work/costs"
+    read -r code ms clock_ms kib <"$work/record"
+    echo "$ms $clock_ms $((kib / 1024)) $1 $name" >>"$work/costs"
     errors=0
     text=
     while IFS= read -r line; do

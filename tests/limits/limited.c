@@ -3,10 +3,10 @@
  *   limited RECORD SECONDS MEBIBYTES COMMAND [ARGUMENT...]
  *
  * No process of it may map more than MEBIBYTES, or take more than SECONDS of processor time; after
- * ten times as many on the clock, of which a busy machine needs more, it is killed. RECORD, a file,
- * gets one line: the exit code (128 and the signal where one ended it), milliseconds of processor
- * time, of all its processes together, and on the clock, and the most mebibytes that one of them
- * had in memory. */
+ * ten times as many on the clock, of which a busy machine needs more, it is killed. 0: no limit.
+ * RECORD, a file, gets one line: the exit code (128 and the signal where one ended it), which is
+ * also limited's, milliseconds of processor time, of all its processes together, and on the clock,
+ * and the most KiB that one of them had in memory. */
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -58,8 +58,10 @@ int main(int argc, char **argv)
     if (command < 0)
         return fail("fork");
     if (command == 0) {
-        setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
-        setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds});
+        if (bytes)
+            setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+        if (seconds)
+            setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds});
         execvp(argv[4], argv + 4);
         _exit(fail(argv[4]));
     }
@@ -70,9 +72,8 @@ int main(int argc, char **argv)
     FILE *record = fopen(argv[1], "w");
     if (!record)
         return fail(argv[1]);
-    fprintf(record, "%d %.0f %.0f %.0f\n",
-            WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status),
-            ms_of(&used.ru_utime) + ms_of(&used.ru_stime), now_ms() - start,
-            (double)used.ru_maxrss / 1024.0);
-    return fclose(record) == 0 ? EXIT_SUCCESS : fail(argv[1]);
+    int code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    fprintf(record, "%d %.0f %.0f %ld\n", code, ms_of(&used.ru_utime) + ms_of(&used.ru_stime),
+            now_ms() - start, used.ru_maxrss);
+    return fclose(record) == 0 ? code : fail(argv[1]);
 }
