@@ -21,10 +21,11 @@ typedef struct Study {
     Image truth_image, actual;
     Image bound; /* of single precision, where desc asks for it; else without pixels */
     TraceStore *truth_trace, *actual_trace, *best_trace, *method_trace;
-    double *sum;      /* CHANNELS per pixel: of all shares */
-    float *greatest;  /* per pixel: the greatest share so far */
-    uint8_t *term;    /* and whose it is */
-    uint8_t *ordered; /* a StructureSame: whether the best rendering has truth's order */
+    TraceStore *stored_trace; /* best in desc's format of depth; NULL where that is the same */
+    double *sum;              /* CHANNELS per pixel: of all shares */
+    float *greatest;          /* per pixel: the greatest share so far */
+    uint8_t *term;            /* and whose it is */
+    uint8_t *ordered;         /* a StructureSame: whether the best rendering has truth's order */
     Budget *budget;
 } Study;
 
@@ -243,6 +244,20 @@ static Result change_formats(Study *study, const RenderDesc *best, const Image *
     return result;
 }
 
+static Result render_stored(Study *study, const RenderDesc *best)
+{
+    RenderDesc stored = *best;
+    Image image = {0};
+    stored.depth = study->desc->depth;
+    if (render_desc_depth(&stored) == render_desc_depth(best))
+        return RESULT_OK;
+    Result result = store_create(0, &study->stored_trace);
+    if (result == RESULT_OK)
+        result = render(study, study->ref, &stored, "stored", study->stored_trace, &image, NULL);
+    image_free(&image);
+    return result;
+}
+
 static Result explain(Study *study)
 {
     const RenderDesc *desc = study->desc;
@@ -258,6 +273,8 @@ static Result explain(Study *study)
                                    study->ordered, &counts);
     if (result == RESULT_OK)
         add_single_precision(study, &image);
+    if (result == RESULT_OK)
+        result = render_stored(study, &best);
     RenderDesc *last = &best;
     if (result == RESULT_OK && method_info(desc->method)->loses_ties) {
         last = &tied;
@@ -337,8 +354,9 @@ static void classify(void *context, size_t pixel, StructurePixel *sides)
     bool layers = method_info(study->desc->method)->layers;
     PixelClass class = CLASS_EQUAL;
     if (memcmp(a, b, CHANNELS * sizeof *a) != 0) {
-        class =
-            layers ? class_of_fragments(study->desc, &sides[0], &sides[1], &sides[2]) : CLASS_EQUAL;
+        if (layers)
+            class = class_of_fragments(study->desc, &sides[0], &sides[1], &sides[2],
+                                       &sides[study->stored_trace ? 3 : 2]);
         if (class == CLASS_EQUAL)
             class = class_of_share(study->term[pixel]);
         if (class == CLASS_ROUNDING && !in_bound(study, pixel, a, b))
@@ -376,6 +394,7 @@ static void release(Study *study)
     store_destroy(study->truth_trace);
     store_destroy(study->actual_trace);
     store_destroy(study->best_trace);
+    store_destroy(study->stored_trace);
     store_destroy(study->method_trace);
     free(study->sum);
     free(study->greatest);
@@ -397,8 +416,10 @@ static Result run(Study *study)
     if (result != RESULT_OK)
         return result;
     conclude(study);
-    const TraceStore *const stores[] = {study->actual_trace, study->truth_trace, study->best_trace};
-    return structure_visit(stores, 3, desc->width, desc->height, classify, study);
+    const TraceStore *const stores[] = {study->actual_trace, study->truth_trace, study->best_trace,
+                                        study->stored_trace};
+    return structure_visit(stores, study->stored_trace ? 4 : 3, desc->width, desc->height, classify,
+                           study);
 }
 
 Result budget_run(const Scene *scene, const RenderDesc *desc, Renderer ref, Renderer truth,

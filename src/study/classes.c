@@ -48,18 +48,18 @@ static bool has(const StructurePixel *side, uint32_t id)
     return find(side, id) >= 0;
 }
 
-/* Why `actual` has not truth's fragment number `index`; best: what single precision can have. */
+/* Why `actual` has not truth's fragment number `index`; possible: what it can have. */
 static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int index,
-                       const StructurePixel *actual, const StructurePixel *best)
+                       const StructurePixel *actual, const StructurePixel *possible)
 {
-    int at = find(best, truth->ids[index]);
+    int at = find(possible, truth->ids[index]);
     if (at < 0)
         return CLASS_COVERAGE;
     /* What is behind the last pass has nothing behind it, in the order that single precision sees,
      * or lies between both ends. */
     bool ends = desc->method == METHOD_DUAL || desc->method == METHOD_FORWARD_DUAL, last = true;
-    for (int i = at + 1; i < best->count; i++)
-        last = last && !has(actual, best->ids[i]);
+    for (int i = at + 1; i < possible->count; i++)
+        last = last && !has(actual, possible->ids[i]);
     if (desc->passes && (last || ends))
         return CLASS_LOST_LIMIT;
     if (desc->method == METHOD_LINKED_LIST)
@@ -69,20 +69,34 @@ static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int 
     return method_info(desc->method)->loses_ties ? CLASS_LOST_TIE : CLASS_UNEXPLAINED;
 }
 
+/* Why `actual` has not the same fragments as truth; CLASS_EQUAL: it has. */
+static PixelClass class_of_set(const RenderDesc *desc, const StructurePixel *actual,
+                               const StructurePixel *truth, const StructurePixel *possible)
+{
+    for (int i = 0; i < truth->count; i++)
+        if (!has(actual, truth->ids[i]))
+            return lost(desc, truth, i, actual, possible);
+    for (int i = 0; i < actual->count; i++)
+        if (!has(truth, actual->ids[i]))
+            return CLASS_COVERAGE;
+    return CLASS_EQUAL;
+}
+
 PixelClass class_of_fragments(const RenderDesc *desc, StructurePixel *actual,
-                              const StructurePixel *truth, const StructurePixel *best)
+                              const StructurePixel *truth, const StructurePixel *best,
+                              const StructurePixel *stored)
 {
     if (actual->opaque != truth->opaque)
         return CLASS_OPAQUE_FLIP;
     int count = structure_drop_repetitions(actual->ids, actual->count);
     bool repeated = count != actual->count;
     actual->count = count;
-    for (int i = 0; i < truth->count; i++)
-        if (!has(actual, truth->ids[i]))
-            return lost(desc, truth, i, actual, best);
-    for (int i = 0; i < actual->count; i++)
-        if (!has(truth, actual->ids[i]))
-            return CLASS_COVERAGE;
+    PixelClass class = class_of_set(desc, actual, truth, stored);
+    /* What desc's depth cannot have, as it is hidden by rounding, single precision may. */
+    if (class == CLASS_COVERAGE && class_of_set(desc, actual, truth, best) != CLASS_COVERAGE)
+        return CLASS_DEPTH;
+    if (class != CLASS_EQUAL)
+        return class;
     if (repeated)
         return CLASS_REPEATED;
     return actual->count == truth->count &&

@@ -136,6 +136,24 @@ START_TEST(test_depth)
 }
 END_TEST
 
+/* A layer whose depth becomes that of the opaque surface: no method has it. */
+START_TEST(test_depth_of_opaque)
+{
+    static const double depths[] = {20.0, 39.9999};
+    static const MethodId methods[] = {METHOD_PEEL, METHOD_PEEL_ID, METHOD_LINKED_LIST};
+    static Layers layers;
+    RenderDesc desc = layers_desc();
+    Budget budget;
+    layers_make(2, depths, &layers);
+    desc.method = methods[_i];
+    desc.depth = FORMAT_D16;
+    run(&layers.scene, &desc, &budget);
+    ck_assert_double_ge(budget.explained, 0.9999);
+    ck_assert_uint_eq(budget.counts[CLASS_DEPTH], PIXELS);
+    budget_free(&budget);
+}
+END_TEST
+
 /* A light so red that 8-bit colours end at 1: clamping is nearly all of it, the rest is the
  * format's. */
 START_TEST(test_clamp)
@@ -235,6 +253,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_one_cause, 0, 7);
     tcase_add_test(tcase, test_ties);
     tcase_add_test(tcase, test_depth);
+    tcase_add_loop_test(tcase, test_depth_of_opaque, 0, 3);
     tcase_add_test(tcase, test_clamp);
     tcase_add_test(tcase, test_seed);
     tcase_add_test(tcase, test_failure);

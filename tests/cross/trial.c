@@ -99,23 +99,12 @@ static bool same_bits(const Image *a, const Image *b, size_t pixel)
                   4 * sizeof(float)) == 0;
 }
 
-static PixelClass class_of_pixel(const Truthful *study, StructurePixel *sides)
-{
-    PixelClass class =
-        class_of_fragments(study->desc, &sides[SIDE_REF], &sides[SIDE_TRUTH], &sides[SIDE_STORED]);
-    if (class != CLASS_COVERAGE)
-        return class;
-    /* Neither has it in this format of depth: does single precision? */
-    class =
-        class_of_fragments(study->desc, &sides[SIDE_REF], &sides[SIDE_TRUTH], &sides[SIDE_BEST]);
-    return class == CLASS_COVERAGE ? class : CLASS_DEPTH;
-}
-
 static void visit(void *context, size_t pixel, StructurePixel *sides)
 {
     Truthful *study = context;
     const Truths *truths = study->truths;
-    PixelClass class = class_of_pixel(study, sides);
+    PixelClass class = class_of_fragments(study->desc, &sides[SIDE_REF], &sides[SIDE_TRUTH],
+                                          &sides[SIDE_BEST], &sides[SIDE_STORED]);
     if (class == CLASS_UNEXPLAINED)
         unexplained(study, pixel, "a fragment is missing, and nothing explains it");
     else if (class == CLASS_EQUAL && study->structure)
