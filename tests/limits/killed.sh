@@ -86,6 +86,7 @@ try() {
 writing TERM 143
 writing INT 130
 writing HUP 129
+writing ABRT 134
 writing KILL 137
 terminal
 if [ -n "$all" ]; then

@@ -91,18 +91,25 @@ static inline void load_quad(const char *members, Scene *out)
     load(write_quad(quad, members), out);
 }
 
-/* The file is refused with one line that names it and contains part. */
-static inline void refused_file(const char *path, Result expected, const char *part)
+/* What loading the file gave is as expected: no scene, and one line that names it and contains
+ * part. */
+static inline void refused_so(const char *path, Result result, const Scene *scene, Result expected,
+                              const char *part)
 {
-    Scene scene;
-    Result result = gltf_load(path, &scene);
     ck_assert_msg(result == expected, "%s: got %s, expected %s", path, result_text(result),
                   result_text(expected));
-    ck_assert_ptr_null(scene.meshes);
+    ck_assert_ptr_null(scene->meshes);
     ck_assert_msg(strstr(result_message(), part) &&
                       strncmp(result_message(), path, strlen(path)) == 0,
                   "got \"%s\", expected \"%s\" in it", result_message(), part);
     ck_assert_ptr_null(strchr(result_message(), '\n'));
+}
+
+static inline void refused_file(const char *path, Result expected, const char *part)
+{
+    Scene scene;
+    Result result = gltf_load(path, &scene);
+    refused_so(path, result, &scene, expected, part);
 }
 
 static inline void refused(const char *members, Result expected, const char *part)
