@@ -26,7 +26,7 @@ typedef struct Library {
 } Library;
 
 enum {
-    LIBRARIES = 8
+    LIBRARIES = 9
 };
 
 static void add(Library *library, const char *name, const char *built, const char *runs)
@@ -57,8 +57,9 @@ static void find_libraries(Library out[LIBRARIES])
     add(&out[5], "nettle", headers, text);
     snprintf(headers, sizeof headers, "%d.%d", __GLIBC__, __GLIBC_MINOR__);
     add(&out[6], "glibc", headers, gnu_get_libc_version());
-    add(&out[7], "OSMesa", FACT_OSMESA, "");
-    context_library(out[7].runs, sizeof out[7].runs);
+    add(&out[7], "libjpeg-turbo", FACT_JPEG, "");
+    add(&out[8], "OSMesa", FACT_OSMESA, "");
+    context_library(out[8].runs, sizeof out[8].runs);
 }
 
 /* Names of what is true of each instruction set, with spaces between. */

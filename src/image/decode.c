@@ -1,5 +1,7 @@
 #include "image/decode.h"
 
+#include "image/decode_jpeg.h"
+
 #include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -9,11 +11,9 @@
  * for another kind of image. */
 static _Thread_local bool short_of_memory;
 
-/* Zeroed: of a JPEG that lacks tables or scans stb reads what it has not written. What grows is a
- * PNG's, and is not read before. */
-static void *decode_zeroed(size_t size)
+static void *decode_allocate(size_t size)
 {
-    void *out = calloc(1, size);
+    void *out = malloc(size);
     short_of_memory |= !out;
     return out;
 }
@@ -37,12 +37,11 @@ static void *decode_grow(void *memory, size_t size)
 #define STB_IMAGE_STATIC
 #endif
 #define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
 #define STBI_NO_GIF
 #define STBI_NO_STDIO
 #define STBI_NO_SIMD /* one code for all processors */
 #define STBI_FAILURE_USERMSG
-#define STBI_MALLOC  decode_zeroed
+#define STBI_MALLOC  decode_allocate
 #define STBI_REALLOC decode_grow
 #define STBI_FREE    free
 /* Declared and defined under different names, which a compiler warns of at the file's end. */
@@ -70,57 +69,21 @@ static Result out_of_memory(const char *label)
     return result_fail(RESULT_NO_MEMORY, "%s: out of memory for its pixels", label);
 }
 
-static Result stb_failure(const char *label, const char *kind)
+static Result stb_failure(const char *label)
 {
     const char *reason = stbi_failure_reason();
     if (short_of_memory || (reason && strcmp(reason, "Out of memory") == 0))
         return out_of_memory(label);
-    return result_fail(RESULT_BAD_INPUT, "%s: cannot decode the %s: %s", label, kind,
+    return result_fail(RESULT_BAD_INPUT, "%s: cannot decode the PNG: %s", label,
                        reason ? reason : "no reason given");
 }
 
-/* Whether a DHT segment is whole tables of at most 256 codes: Debian 12's stb reads the counts of
- * a table even behind the segment, and writes past its own table when they are more. */
-static bool tables_fit(const unsigned char *segment, size_t count)
+static Result png_size(const unsigned char *bytes, size_t count, const char *label, int *width,
+                       int *height, int *channels)
 {
-    size_t at = 0;
-    while (at + 17 <= count) {
-        size_t codes = 0;
-        for (size_t i = 1; i <= 16; i++)
-            codes += segment[at + i];
-        if (codes > 256)
-            return false;
-        at += 17 + codes;
-    }
-    return at == count;
-}
-
-/* NULL, or what is wrong with a JPEG that stb would not tell: it fills what is missing with grey.
- * Source: ITU-T T.81, annex B: segments with a length each; a scan's data, in which 0xff 0x00 and
- * the restarts d0 to d7 are no markers, behind each da. stb looks for markers in the same way. */
-static const char *jpeg_fault(const unsigned char *bytes, size_t count)
-{
-    static const char *const early = "it ends too early";
-    size_t at = 2;
-    while (at + 1 < count) {
-        unsigned char marker = bytes[at + 1];
-        bool data = bytes[at] != 0xff || marker == 0 || (marker >= 0xd0 && marker <= 0xd7);
-        if (data || marker == 0xff) {
-            at++;
-            continue;
-        }
-        if (marker == 0xd9)
-            return NULL;
-        if (at + 3 >= count)
-            return early;
-        size_t length = (size_t)bytes[at + 2] << 8 | bytes[at + 3];
-        if (length < 2 || length > count - at - 2)
-            return early;
-        if (marker == 0xc4 && !tables_fit(bytes + at + 4, length - 2))
-            return "broken Huffman tables";
-        at += 2 + length;
-    }
-    return early;
+    short_of_memory = false;
+    return stbi_info_from_memory(bytes, (int)count, width, height, channels) ? RESULT_OK
+                                                                             : stb_failure(label);
 }
 
 /* Where a PNG's PLTE chunk begins, if it has colours stored as indices and fewer than the 256 that
@@ -161,6 +124,15 @@ static Result fill_palette(const unsigned char *bytes, size_t count, size_t at, 
     return RESULT_OK;
 }
 
+/* Of a file whose kind and header were found to be sound. */
+static Result size_of(const unsigned char *bytes, size_t count, const char *label, int *width,
+                      int *height, int *channels)
+{
+    return *kind_of(bytes, count) == 'J'
+               ? decode_jpeg_size(bytes, count, label, width, height, channels)
+               : png_size(bytes, count, label, width, height, channels);
+}
+
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
                    int *height)
 {
@@ -171,12 +143,9 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     if (count > INT_MAX - PALETTE_BYTES)
         return result_fail(RESULT_BAD_INPUT, "%s: %zu bytes of %s, expected below 2^31", label,
                            count, kind);
-    short_of_memory = false;
-    const char *fault = *kind == 'J' ? jpeg_fault(bytes, count) : NULL;
-    if (fault)
-        return result_fail(RESULT_BAD_INPUT, "%s: cannot decode the JPEG: %s", label, fault);
-    if (!stbi_info_from_memory(bytes, (int)count, width, height, &channels))
-        return stb_failure(label, kind);
+    Result result = size_of(bytes, count, label, width, height, &channels);
+    if (result != RESULT_OK)
+        return result;
     if (*width < 1 || *height < 1 || *width > DECODE_MAX_PIXELS || *height > DECODE_MAX_PIXELS)
         return result_fail(RESULT_BAD_INPUT, "%s: %dx%d pixels, expected 1 to %d a side", label,
                            *width, *height, DECODE_MAX_PIXELS);
@@ -187,8 +156,7 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
     return RESULT_OK;
 }
 
-/* Of a file whose header was found to be sound. */
-static Result load(const unsigned char *bytes, size_t count, const char *label, Image *out)
+static Result load_png(const unsigned char *bytes, size_t count, const char *label, Image *out)
 {
     int width, height, channels;
     /* stb keeps its latest reason, and does not always give one: this is none of a real file. */
@@ -201,10 +169,9 @@ static Result load(const unsigned char *bytes, size_t count, const char *label, 
                                                         &channels, STBI_rgb_alpha);
     if (!pixels && !short_of_memory && stbi_failure_reason() == before)
         return result_fail(RESULT_BAD_INPUT,
-                           "%s: cannot decode the %s: it is broken, or 2^31 bytes or more", label,
-                           kind_of(bytes, count));
+                           "%s: cannot decode the PNG: it is broken, or 2^31 bytes or more", label);
     if (!pixels)
-        return stb_failure(label, kind_of(bytes, count));
+        return stb_failure(label);
     if (short_of_memory) {
         free(pixels);
         return out_of_memory(label);
@@ -219,13 +186,15 @@ Result decode_image(const unsigned char *bytes, size_t count, const char *label,
     unsigned char *filled = NULL;
     *out = (Image){0};
     Result result = decode_size(bytes, count, label, &width, &height);
-    if (result)
+    if (result != RESULT_OK)
         return result;
-    size_t palette = *kind_of(bytes, count) == 'P' ? find_short_palette(bytes, count) : 0;
+    if (*kind_of(bytes, count) == 'J')
+        return decode_jpeg_image(bytes, count, label, out);
+    size_t palette = find_short_palette(bytes, count);
     if (palette)
         result = fill_palette(bytes, count, palette, label, &filled, &count);
     if (result == RESULT_OK)
-        result = load(filled ? filled : bytes, count, label, out);
+        result = load_png(filled ? filled : bytes, count, label, out);
     free(filled);
     return result;
 }
@@ -233,8 +202,5 @@ Result decode_image(const unsigned char *bytes, size_t count, const char *label,
 Result decode_channels(const unsigned char *bytes, size_t count, const char *label, int *channels)
 {
     int width, height;
-    short_of_memory = false;
-    if (!stbi_info_from_memory(bytes, (int)count, &width, &height, channels))
-        return stb_failure(label, kind_of(bytes, count));
-    return RESULT_OK;
+    return size_of(bytes, count, label, &width, &height, channels);
 }

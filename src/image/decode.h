@@ -1,4 +1,4 @@
-/* PNG and JPEG files in memory to pixels, through stb_image. */
+/* PNG and JPEG files in memory to pixels, through stb_image and libjpeg. */
 #ifndef PEEL_IMAGE_DECODE_H
 #define PEEL_IMAGE_DECODE_H
 
@@ -11,15 +11,15 @@ enum {
 }; /* per side */
 
 /* The size of an image, in pixels, without decoding it. The format is told from the first bytes.
- * label begins the message. BAD_INPUT for what is neither PNG nor JPEG, a broken header, a JPEG
- * without its end, or more than DECODE_MAX_PIXELS a side. */
+ * label begins the message. BAD_INPUT for what is neither PNG nor JPEG, a broken header, or more
+ * than DECODE_MAX_PIXELS a side. */
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
                    int *height);
 
 /* The pixels as stored: FORMAT_RGBA16 of a PNG with 16 bits, else FORMAT_RGBA8. Grey is repeated
  * in red, green and blue; alpha is 1 where the file has none. Colour profiles and gamma are
  * ignored, as glTF demands. The same bytes give the same pixels on every processor. The caller
- * frees *out with image_free. BAD_INPUT with stb's reason, also for a file that ends too early;
+ * frees *out with image_free. BAD_INPUT with the library's reason, also for a file that ends too early;
  * NO_MEMORY. */
 Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out);
 

@@ -8,6 +8,8 @@
 
 #include <stdio.h>
 
+#include <jpeglib.h>
+
 static void decodes(const SmallPng *png, PixelFormat format, const void *expected, size_t size)
 {
     Image image;
@@ -162,7 +164,7 @@ START_TEST(jpeg)
     image_free(&image);
     for (size_t cut = 0; cut + 1 < count; cut++)
         refused(bytes, cut, "");
-    refused(bytes, count - 2, "ends too early");
+    refused(bytes, count - 2, "remature end of JPEG file");
     size_t at = 0;
     while (memcmp(bytes + at, "\xff\xc0", 2) != 0) /* the frame's header: of that many pixels */
         ck_assert_uint_lt(++at, count - 9);
@@ -191,22 +193,128 @@ START_TEST(jpeg_restarts)
 }
 END_TEST
 
-/* stb writes past its table for more than 256 codes, and reads on where a segment ends too early.
- */
-START_TEST(huffman_tables)
+/* ---- JPEG files by libjpeg ---- */
+
+typedef struct JpegKind {
+    J_COLOR_SPACE space;
+    int channels;
+    bool progressive;
+    unsigned char pixel[4], expected[3];
+} JpegKind;
+
+/* 24 × 16 pixels of one colour; with a script in these scans. The caller frees *bytes. */
+static unsigned long write_jpeg(const JpegKind *kind, const jpeg_scan_info *script, int scans,
+                                unsigned char **bytes)
 {
-    for (size_t codes = 255; codes <= 257; codes++) {
-        unsigned char bytes[300] = {0xff, 0xd8, 0xff, 0xc4};
-        size_t length = 2 + 17 + codes;
-        bytes[4] = (unsigned char)(length >> 8);
-        bytes[5] = (unsigned char)length;
-        bytes[21] = 255;
-        bytes[22] = (unsigned char)(codes - 255);
-        bytes[2 + 2 + length] = 0xff;
-        bytes[2 + 2 + length + 1] = 0xd9;
-        refused(bytes, 2 + 2 + length + 2, codes > 256 ? "broken Huffman tables" : "or corrupt");
-        bytes[5]--; /* the last code is outside */
-        refused(bytes, 2 + 2 + length + 2, "broken Huffman tables");
+    struct jpeg_compress_struct info = {0};
+    struct jpeg_error_mgr errors;
+    unsigned long count = 0;
+    unsigned char row[4 * 24], *rows[1] = {row};
+    for (int i = 0; i < 24 * kind->channels; i++)
+        row[i] = kind->pixel[i % kind->channels];
+    *bytes = NULL;
+    info.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&info);
+    jpeg_mem_dest(&info, bytes, &count);
+    info.image_width = 24;
+    info.image_height = 16;
+    info.input_components = kind->channels;
+    info.in_color_space = kind->space;
+    jpeg_set_defaults(&info);
+    if (kind->progressive)
+        jpeg_simple_progression(&info);
+    if (script) {
+        info.scan_info = script;
+        info.num_scans = scans;
+    }
+    jpeg_start_compress(&info, TRUE);
+    while (info.next_scanline < info.image_height)
+        jpeg_write_scanlines(&info, rows, 1);
+    jpeg_finish_compress(&info);
+    jpeg_destroy_compress(&info);
+    return count;
+}
+
+/* What is written for CMYK has Adobe's marker: 255 is no ink. */
+START_TEST(jpeg_kinds)
+{
+    static const JpegKind kinds[] = {
+        {JCS_GRAYSCALE, 1, false, {77}, {77, 77, 77}},
+        {JCS_RGB, 3, false, {10, 200, 90}, {10, 200, 90}},
+        {JCS_RGB, 3, true, {10, 200, 90}, {10, 200, 90}},
+        {JCS_CMYK, 4, false, {255, 128, 0, 255}, {255, 128, 0}},
+        {JCS_CMYK, 4, true, {255, 128, 64, 128}, {128, 64, 32}},
+    };
+    const JpegKind *kind = &kinds[_i];
+    unsigned char *bytes;
+    size_t count = write_jpeg(kind, NULL, 0, &bytes);
+    Image image;
+    int stored;
+    Result result = decode_image(bytes, count, "x", &image);
+    ck_assert_msg(result == RESULT_OK, "%s", result_message());
+    ck_assert(image.width == 24 && image.height == 16 && image.format == FORMAT_RGBA8);
+    for (int at = 0; at < 24 * 16; at++) {
+        const uint8_t *pixel = image_pixel(&image, at % 24, at / 24);
+        for (int c = 0; c < 3; c++)
+            ck_assert_int_le(abs(pixel[c] - kind->expected[c]), 3);
+        ck_assert_int_eq(pixel[3], 255);
+    }
+    ck_assert_int_eq(decode_channels(bytes, count, "x", &stored), RESULT_OK);
+    ck_assert_int_eq(stored, kind->channels == 1 ? 1 : 3);
+    image_free(&image);
+    for (size_t cut = 0; cut + 1 < count; cut++)
+        refused(bytes, cut, "");
+    free(bytes);
+}
+END_TEST
+
+/* One byte of the data changed at a time: decoded or refused, never more. */
+START_TEST(jpeg_damaged)
+{
+    static const JpegKind kind = {JCS_RGB, 3, true, {10, 200, 90}, {0}};
+    unsigned char *bytes;
+    unsigned long count = write_jpeg(&kind, NULL, 0, &bytes);
+    int decoded = 0;
+    for (unsigned long at = 0; at < count; at++)
+        for (int bit = 0; bit < 8; bit++) {
+            Image image;
+            bytes[at] ^= (unsigned char)(1 << bit);
+            Result result = decode_image(bytes, count, "x", &image);
+            ck_assert_msg(result == RESULT_OK || result == RESULT_BAD_INPUT, "%s",
+                          result_message());
+            decoded += result == RESULT_OK;
+            image_free(&image);
+            bytes[at] ^= (unsigned char)(1 << bit);
+        }
+    ck_assert_int_gt(decoded, 0);
+    free(bytes);
+}
+END_TEST
+
+/* Each coefficient of each block in scans of its own, a bit at a time. */
+START_TEST(jpeg_scans)
+{
+    static const JpegKind kind = {JCS_GRAYSCALE, 1, true, {77}, {0}};
+    static jpeg_scan_info script[1 + 63 * 10] = {{.comps_in_scan = 1}};
+    int scans = 1;
+    for (int coefficient = 1; coefficient < 64; coefficient++)
+        for (int bit = 9; bit >= 0; bit--)
+            script[scans++] = (jpeg_scan_info){.comps_in_scan = 1,
+                                               .Ss = coefficient,
+                                               .Se = coefficient,
+                                               .Ah = bit == 9 ? 0 : bit + 1,
+                                               .Al = bit};
+    for (int many = 0; many < 2; many++) {
+        unsigned char *bytes;
+        unsigned long count = write_jpeg(&kind, script, many ? scans : 401, &bytes);
+        Image image;
+        if (many) {
+            refused(bytes, count, "more than 500 scans");
+        } else {
+            ck_assert_int_eq(decode_image(bytes, count, "x", &image), RESULT_OK);
+            image_free(&image);
+        }
+        free(bytes);
     }
 }
 END_TEST
@@ -226,7 +334,9 @@ int main(void)
     tcase_add_test(test, broken_files);
     tcase_add_test(test, jpeg);
     tcase_add_test(test, jpeg_restarts);
-    tcase_add_test(test, huffman_tables);
+    tcase_add_loop_test(test, jpeg_kinds, 0, 5);
+    tcase_add_test(test, jpeg_damaged);
+    tcase_add_test(test, jpeg_scans);
     suite_add_tcase(suite, test);
     return testing_run(suite);
 }
