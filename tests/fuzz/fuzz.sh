@@ -96,8 +96,9 @@ while [ "$used" -lt "$what" ]; do
     [ $left -lt 300 ] || left=300
     # shellcheck disable=SC2046,SC2086 # lists of words
     (cd "$scratch/run" && exec nice -n 19 "$fuzzer" -fork=1 -ignore_crashes=1 -ignore_ooms=1 \
-        -ignore_timeouts=1 -max_total_time="$left" -timeout=25 -rss_limit_mb=3000 -max_len="$longest" \
-        -artifact_prefix="$found/" $dictionary "$folder" $(starts)) >"$scratch/log" 2>&1
+        -ignore_timeouts=1 -max_total_time="$left" -timeout=25 -report_slow_units=25 \
+        -rss_limit_mb=3000 -max_len="$longest" -artifact_prefix="$found/" $dictionary \
+        "$folder" $(starts)) >"$scratch/log" 2>&1
     cat "$scratch/log" >>"$log"
     last=$(grep -a '^#[0-9]*: cov:' "$scratch/log" | tail -1)
     [ -n "$last" ] || {
