@@ -34,6 +34,11 @@ build() {
     mkdir "$logs"
 }
 
+# Tests of what an instrumented program is not: within so much memory (loading, limits,
+# surroundings), in need of so few libraries (deb).
+# shellcheck disable=SC2034 # for them
+uninstrumented='loading|limits|surroundings|deb'
+
 # run_tests WITHOUT: all but those whose names match; `tests` of them ran, `failed` of them failed.
 run_tests() {
     ctest --test-dir "$directory" -L '^ci$' -R "$only" -E "$1" -j "$(nproc)" --no-tests=error \

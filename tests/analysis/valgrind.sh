@@ -7,7 +7,8 @@
 # paths. Random cases are few: PEEL_TEST_COUNT, 10 unless it is set. Hours for all tests.
 #
 # Not run, because nothing of Peel would run under valgrind: what node starts (gltf_validator,
-# live_view, web_*), what a compiler makes of the installed library (package), includes.
+# live_view, web_*), what a compiler makes of the installed library (package), includes; nor
+# models_gltf, which has 20 seconds for each file.
 # Exits 1 if a test fails or a process of one reports anything.
 set -u
 . "$(dirname "$0")/analysis.sh"
@@ -19,5 +20,5 @@ export VALGRIND_OPTS="--quiet --leak-check=full --show-leak-kinds=definite \
 --errors-for-leak-kinds=definite --num-callers=30 --fullpath-after=$root/ \
 --log-file=$logs/report.%p"
 export CK_TIMEOUT_MULTIPLIER=100 PEEL_TEST_COUNT="${PEEL_TEST_COUNT-10}" PEEL_TEST_STRIDE=100003
-run_tests '^(gltf_validator|live_view|web_.*|package|includes)$'
+run_tests "^(gltf_validator|live_view|web_.*|package|includes|models_gltf|$uninstrumented)\$"
 count_reports
