@@ -169,6 +169,32 @@ static Point find_point(const Triangle *triangle, bool textured, bool has_depth,
     return point;
 }
 
+static void set_range(double value, double error, double range[2])
+{
+    bool known = isfinite(error);
+    range[0] = known ? value - error : -(double)INFINITY;
+    range[1] = known ? value + error : (double)INFINITY;
+}
+
+void bound_fragment(const Soup *soup, const RenderDesc *desc, uint32_t triangle, int x, int y,
+                    BoundFragment *out)
+{
+    Triangle exact = make_triangle(soup, triangle);
+    SinglePixel pixel;
+    Bounded weight[3];
+    Point point = find_point(&exact, false, true, !desc->unfused, x, y);
+    set_pixel(&exact, x, y, weight, &pixel);
+    SingleViewport viewport = single_viewport(exact.view, !desc->unfused);
+    SingleCover cover = single_cover(&viewport, exact.single, &pixel);
+    const Draw *draw = exact.draw->draw;
+    bool kept = !draw->masked && (point.facing_certain || !draw->cull_back);
+    out->possible = cover.possible;
+    out->certain = cover.certain && kept;
+    set_range(point.depth.value, point.depth.exact, out->exact);
+    Bounded stored = bound_store_depth(render_desc_depth(desc), point.depth);
+    set_range(stored.value, stored.single, out->stored);
+}
+
 /* ---- the surface ----------------------------------------------------------------------------- */
 
 static void store_surface(const View *view, const RenderDesc *desc, Bounded depth, int x, int y,

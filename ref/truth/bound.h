@@ -18,6 +18,18 @@
 void bound_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
                    BoundedSurface *surface);
 
+/* What may be of a triangle at a pixel, y up: whether its pieces, snapped by any rounding, may
+ * cover the centre, and whether they must; which window depths its plane, and the pipeline in
+ * desc's format, may have there. Not certain either where a texture's alpha, or a facing that
+ * depends on rounding, may discard it. */
+typedef struct BoundFragment {
+    bool possible, certain;
+    double exact[2], stored[2]; /* least and greatest; −∞ and ∞ where nothing can be said */
+} BoundFragment;
+
+void bound_fragment(const Soup *soup, const RenderDesc *desc, uint32_t triangle, int x, int y,
+                    BoundFragment *out);
+
 /* Puts a fragment behind rgba, colour so far and transmittance: (0, 0, 0, 1) to begin with. */
 void bound_blend(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
                  Bounded rgba[4]);

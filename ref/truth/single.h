@@ -72,6 +72,15 @@ typedef struct SinglePixel {
     Bounded inverse_w;               /* at the centre */
 } SinglePixel;
 
+/* Whether the pipeline's pieces of the triangle may cover the pixel's centre, and whether they must,
+ * whichever way each corner is rounded and snapped. */
+typedef struct SingleCover {
+    bool possible, certain;
+} SingleCover;
+
+SingleCover single_cover(const SingleViewport *viewport, const SingleVertex triangle[3],
+                         const SinglePixel *pixel);
+
 /* attribute: value and exact at the pixel, SINGLE_POSITION … used − 1; fills their single with the
  * greatest over all pieces that may cover the pixel, ∞ where there is none. depth: the same of the
  * window depth, or NULL. *facing_certain: no piece is so thin that its facing depends on rounding.

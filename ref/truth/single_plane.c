@@ -354,26 +354,52 @@ static void add_piece(const SingleViewport *viewport, const SingleVertex triangl
     }
 }
 
+/* False: nothing is known of a corner. */
+static bool set_corners(const SingleViewport *viewport, const SinglePixel *pixel,
+                        const SinglePolygon *polygon, PieceCorner corners[SINGLE_CORNERS_MAX])
+{
+    for (int i = 0; i < polygon->count; i++)
+        if (!set_corner(viewport, &polygon->corner[i], pixel, &corners[i]))
+            return false;
+    return true;
+}
+
+/* Number i, from 2, of a polygon's fan. */
+static Piece fan_piece(const SinglePolygon *polygon, const PieceCorner *corners, int i)
+{
+    if (polygon->whole)
+        return (Piece){.corner = {corners[0], corners[1], corners[2]}};
+    return (Piece){.corner = {corners[i - 1], corners[i], corners[0]}};
+}
+
 /* Adds what may cover the pixel of one polygon's fan. */
 static void add_polygon(const SingleViewport *viewport, const SingleVertex triangle[3],
                         const SinglePixel *pixel, const SinglePolygon *polygon, int used,
                         const Bounded *attribute, const Bounded *depth, Errors *errors)
 {
     PieceCorner corners[SINGLE_CORNERS_MAX];
-    for (int i = 0; i < polygon->count; i++)
-        if (!set_corner(viewport, &polygon->corner[i], pixel, &corners[i])) {
-            errors->unknown = true;
-            return;
-        }
+    if (!set_corners(viewport, pixel, polygon, corners)) {
+        errors->unknown = true;
+        return;
+    }
     for (int i = 2; i < polygon->count; i++) {
-        Piece piece = {.corner = {corners[i - 1], corners[i], corners[0]}};
-        if (polygon->whole)
-            piece = (Piece){.corner = {corners[0], corners[1], corners[2]}};
+        Piece piece = fan_piece(polygon, corners, i);
         if (polygon->count > 3 && !may_cover(piece.corner))
             continue;
         errors->any = true;
         add_piece(viewport, triangle, pixel, &piece, used, attribute, depth, errors);
     }
+}
+
+/* The next combination of decisions: the last that was not yet taken the other way. False: there is
+ * none. */
+static bool next_choices(int decisions, unsigned *choices)
+{
+    while (decisions > 0 && *choices >> (decisions - 1) & 1)
+        *choices &= ~(1u << --decisions);
+    if (decisions > 0)
+        *choices |= 1u << (decisions - 1);
+    return decisions > 0;
 }
 
 void single_errors(const SingleViewport *viewport, const SingleVertex triangle[3],
@@ -382,7 +408,7 @@ void single_errors(const SingleViewport *viewport, const SingleVertex triangle[3
 {
     Errors errors = {.facing_certain = true};
     unsigned choices = 0;
-    int decisions = 0;
+    int decisions;
     do {
         SinglePolygon polygon;
         decisions = single_clip(viewport, triangle, choices, &polygon);
@@ -391,16 +417,58 @@ void single_errors(const SingleViewport *viewport, const SingleVertex triangle[3
             break;
         }
         add_polygon(viewport, triangle, pixel, &polygon, used, attribute, depth, &errors);
-        /* The next combination: the last decision that was not yet taken the other way. */
-        while (decisions > 0 && choices >> (decisions - 1) & 1)
-            choices &= ~(1u << --decisions);
-        if (decisions > 0)
-            choices |= 1u << (decisions - 1);
-    } while (decisions > 0);
+    } while (next_choices(decisions, &choices));
     bool known = errors.any && !errors.unknown;
     for (int k = SINGLE_POSITION; k < used; k++)
         attribute[k].single = known ? errors.component[k] : (double)INFINITY;
     if (depth)
         depth->single = known ? errors.depth : (double)INFINITY;
     *facing_certain = errors.facing_certain;
+}
+
+/* ---- coverage -------------------------------------------------------------------------------- */
+
+/* Whether the centre lies within the convex polygon however its corners are snapped, and so in a
+ * piece of its fan, whose inner edges two pieces share. */
+static bool must_cover(const PieceCorner *corners, int count)
+{
+    int side = 0;
+    for (int i = 0; i < count; i++) {
+        const PieceCorner ends[3] = {corners[i], corners[i], corners[(i + 1) % count]};
+        double error, value = edge(ends, 0, SNAP, &error);
+        int here = value > error ? 1 : value < -error ? -1 : 0;
+        if (here == 0 || (i > 0 && here != side))
+            return false;
+        side = here;
+    }
+    return count >= 3;
+}
+
+static void cover_polygon(const SingleViewport *viewport, const SinglePixel *pixel,
+                          const SinglePolygon *polygon, SingleCover *cover)
+{
+    PieceCorner corners[SINGLE_CORNERS_MAX];
+    if (!set_corners(viewport, pixel, polygon, corners)) {
+        *cover = (SingleCover){.possible = true};
+        return;
+    }
+    for (int i = 2; i < polygon->count && !cover->possible; i++)
+        cover->possible = may_cover(fan_piece(polygon, corners, i).corner);
+    cover->certain = cover->certain && must_cover(corners, polygon->count);
+}
+
+SingleCover single_cover(const SingleViewport *viewport, const SingleVertex triangle[3],
+                         const SinglePixel *pixel)
+{
+    SingleCover cover = {.possible = false, .certain = true};
+    unsigned choices = 0;
+    int decisions;
+    do {
+        SinglePolygon polygon;
+        decisions = single_clip(viewport, triangle, choices, &polygon);
+        if (decisions > SINGLE_DECISIONS_MAX)
+            return (SingleCover){.possible = true};
+        cover_polygon(viewport, pixel, &polygon, &cover);
+    } while (next_choices(decisions, &choices));
+    return cover;
 }

@@ -88,6 +88,14 @@ uint32_t soup_primitive(const Soup *soup, uint32_t triangle)
     return draw->draw->first_primitive + (triangle - draw->first_triangle);
 }
 
+uint32_t soup_triangle(const Soup *soup, uint32_t primitive)
+{
+    const SoupDraw *draw = soup->draws;
+    while (primitive - draw->draw->first_primitive >= draw->mesh->triangle_count)
+        draw++;
+    return draw->first_triangle + (primitive - draw->draw->first_primitive);
+}
+
 void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3])
 {
     const SoupDraw *draw = soup_draw(soup, triangle);

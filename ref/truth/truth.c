@@ -89,9 +89,12 @@ static void bound_pixel(const Render *render, const TileFragments *tile, int pix
         bound_blend(&render->soup, render->desc, &tile->opaque[pixel], x, y, bound);
     bound_resolve(render->view, render->desc->accum, bound);
     for (int i = 0; i < 4; i++) {
-        double apart = fabs(bound[i].value - rgba[i]) + BOUNDED_SINGLE * fabs(rgba[i]);
-        double most = bounded_limit((bound[i].single + apart) * BOUNDED_SLACK);
-        double own = bounded_limit(bound[i].exact + fabs(bound[i].value - rgba[i]));
+        /* Both are within `exact` of what exact arithmetic gives. Were they farther apart, one of
+         * them would be wrong: that is no part of the bounds, and so is seen beyond them. */
+        double apart = fmin(fabs(bound[i].value - rgba[i]), 2.0 * bound[i].exact);
+        double narrowed = apart + BOUNDED_SINGLE * fabs(rgba[i]);
+        double most = bounded_limit((bound[i].single + narrowed) * BOUNDED_SLACK);
+        double own = bounded_limit(bound[i].exact + apart);
         out[i] = most > 0.0 ? nextafterf((float)most, INFINITY) : 0.0f;
         rounding[i] = own > 0.0 ? nextafterf((float)own, INFINITY) : 0.0f;
     }

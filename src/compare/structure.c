@@ -8,14 +8,14 @@
 
 #define NONE UINT32_MAX
 
-/* One side's ids of one tile: layer k of pixel p is ids[k·TRACE_TILE² + p]. */
+/* One side's ids of one tile: layer k of pixel p is ids[k·TRACE_TILE² + p]; and its depths. */
 typedef struct Layers {
     const TraceStore *store;
-    int opaque; /* buffer index or −1 */
-    int *peel;  /* buffer indices */
+    int opaque;        /* buffer index or −1 */
+    int *peel, *depth; /* buffer indices; depth NULL: not asked for */
     int count;
     uint32_t *opaque_ids;
-    uint32_t *ids;
+    uint32_t *ids, *depths;
 } Layers;
 
 enum {
@@ -25,29 +25,45 @@ enum {
 static void layers_free(Layers *layers)
 {
     free(layers->peel);
+    free(layers->depth);
     free(layers->opaque_ids);
     free(layers->ids);
+    free(layers->depths);
 }
 
-static Result layers_open(const TraceStore *store, Layers *out)
+/* Indices of buffers peel.K.`what`, to *out, which the caller frees; returns how many. */
+static Result find_layers(const TraceStore *store, const char *what, int **out, int *count)
 {
-    *out = (Layers){.store = store, .opaque = store_find(store, "opaque.primitive")};
     char name[48];
     size_t capacity = 0;
-    for (int k = 0;; k++) {
-        snprintf(name, sizeof name, "peel.%d.primitive", k);
+    for (*count = 0;; ++*count) {
+        snprintf(name, sizeof name, "peel.%d.%s", *count, what);
         int index = store_find(store, name);
         if (index < 0)
-            break;
-        Result result =
-            memory_grow((void **)&out->peel, &capacity, (size_t)k + 1, sizeof *out->peel);
+            return RESULT_OK;
+        Result result = memory_grow((void **)out, &capacity, (size_t)*count + 1, sizeof **out);
         if (result != RESULT_OK)
             return result;
-        out->peel[out->count++] = index;
+        (*out)[*count] = index;
     }
+}
+
+static Result layers_open(const TraceStore *store, bool deep, Layers *out)
+{
+    int depths = 0;
+    *out = (Layers){.store = store, .opaque = store_find(store, "opaque.primitive")};
+    Result result = find_layers(store, "primitive", &out->peel, &out->count);
+    if (result == RESULT_OK && deep)
+        result = find_layers(store, "depth", &out->depth, &depths);
+    if (result != RESULT_OK)
+        return result;
+    if (deep && depths < out->count)
+        return result_fail(RESULT_INTERNAL, "trace: %d depths of %d layers", depths, out->count);
+    size_t ids = (size_t)out->count * TILE_PIXELS;
     out->opaque_ids = memory_array(TILE_PIXELS, sizeof *out->opaque_ids);
-    out->ids = memory_array((size_t)out->count * TILE_PIXELS, sizeof *out->ids);
-    return out->opaque_ids && out->ids ? RESULT_OK : RESULT_NO_MEMORY;
+    out->ids = memory_array(ids, sizeof *out->ids);
+    out->depths = deep ? memory_array(ids, sizeof *out->depths) : NULL;
+    return out->opaque_ids && out->ids && (out->depths || !deep) ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 static Result layers_load(Layers *layers, int x, int y, int width, int height)
@@ -61,22 +77,26 @@ static Result layers_load(Layers *layers, int x, int y, int width, int height)
     for (int k = 0; result == RESULT_OK && k < layers->count; k++)
         result = store_read(layers->store, layers->peel[k], x, y, width, height,
                             layers->ids + (size_t)k * TILE_PIXELS, row);
+    for (int k = 0; layers->depths && result == RESULT_OK && k < layers->count; k++)
+        result = store_read(layers->store, layers->depth[k], x, y, width, height,
+                            layers->depths + (size_t)k * TILE_PIXELS, row);
     return result;
 }
 
-/* Pixel p's ids from front to back; returns how many. */
-static int gather(const Layers *layers, int p, uint32_t *out)
+/* Pixel p's ids and depths from front to back, to out's arrays. */
+static void gather(const Layers *layers, int p, StructurePixel *out)
 {
-    int count = 0;
     for (int k = 0; k < layers->count; k++) {
-        uint32_t id = layers->ids[(size_t)k * TILE_PIXELS + (size_t)p];
-        if (id != NONE)
-            out[count++] = id;
+        size_t at = (size_t)k * TILE_PIXELS + (size_t)p;
+        if (layers->ids[at] == NONE)
+            continue;
+        if (out->depths)
+            out->depths[out->count] = layers->depths[at];
+        out->ids[out->count++] = layers->ids[at];
     }
-    return count;
 }
 
-static int find(const uint32_t *ids, int count, uint32_t id)
+int structure_find(const uint32_t *ids, int count, uint32_t id)
 {
     for (int i = 0; i < count; i++)
         if (ids[i] == id)
@@ -105,7 +125,7 @@ static void count_differences(const uint32_t *a, int count_a, const uint32_t *b,
         count_a--, count_b--;
     int common = 0, last = -1;
     for (int i = 0; i < count_a; i++) {
-        int rank = find(b, count_b, a[i]);
+        int rank = structure_find(b, count_b, a[i]);
         if (rank < 0) {
             out->only_a++;
             continue;
@@ -122,30 +142,35 @@ static void count_differences(const uint32_t *a, int count_a, const uint32_t *b,
 
 typedef struct Sides {
     Layers layers[STRUCTURE_STORES_MAX];
-    uint32_t *ids[STRUCTURE_STORES_MAX]; /* of one pixel */
+    StructurePixel pixels[STRUCTURE_STORES_MAX]; /* with the arrays of one pixel */
     int count;
 } Sides;
 
-static Result open_sides(const TraceStore *const stores[], int count, Sides *out)
+static Result open_sides(const TraceStore *const stores[], int count, int deep, Sides *out)
 {
-    Result result = RESULT_OK;
     *out = (Sides){.count = count};
-    for (int i = 0; i < count && result == RESULT_OK; i++) {
-        result = layers_open(stores[i], &out->layers[i]);
+    for (int i = 0; i < count; i++) {
+        Result result = layers_open(stores[i], i == deep, &out->layers[i]);
         if (result != RESULT_OK)
-            break;
-        out->ids[i] = memory_array((size_t)out->layers[i].count, sizeof(uint32_t));
-        result = out->ids[i] ? RESULT_OK : RESULT_NO_MEMORY;
+            return result;
+        StructurePixel *pixel = &out->pixels[i];
+        size_t layers = (size_t)out->layers[i].count;
+        pixel->ids = memory_array(layers, sizeof *pixel->ids);
+        pixel->depths = i == deep ? memory_array(layers, sizeof *pixel->depths) : NULL;
+        if (!pixel->ids || (i == deep && !pixel->depths))
+            return RESULT_NO_MEMORY;
     }
-    return result;
+    return RESULT_OK;
 }
 
 static void visit_pixel(Sides *sides, int p, size_t pixel, StructureVisit visit, void *context)
 {
-    StructurePixel pixels[STRUCTURE_STORES_MAX] = {0};
-    for (int i = 0; i < sides->count; i++)
-        pixels[i] = (StructurePixel){sides->layers[i].opaque_ids[p], sides->ids[i],
-                                     gather(&sides->layers[i], p, sides->ids[i])};
+    StructurePixel pixels[STRUCTURE_STORES_MAX];
+    memcpy(pixels, sides->pixels, sizeof pixels);
+    for (int i = 0; i < sides->count; i++) {
+        pixels[i].opaque = sides->layers[i].opaque_ids[p];
+        gather(&sides->layers[i], p, &pixels[i]);
+    }
     visit(context, pixel, pixels);
 }
 
@@ -169,15 +194,16 @@ static Result visit_tiles(Sides *sides, int width, int height, StructureVisit vi
     return RESULT_OK;
 }
 
-Result structure_visit(const TraceStore *const stores[], int count, int width, int height,
+Result structure_visit(const TraceStore *const stores[], int count, int deep, int width, int height,
                        StructureVisit visit, void *context)
 {
     Sides sides;
-    Result result = open_sides(stores, count, &sides);
+    Result result = open_sides(stores, count, deep, &sides);
     if (result == RESULT_OK)
         result = visit_tiles(&sides, width, height, visit, context);
     for (int i = 0; i < count; i++) {
-        free(sides.ids[i]);
+        free(sides.pixels[i].ids);
+        free(sides.pixels[i].depths);
         layers_free(&sides.layers[i]);
     }
     return result;
@@ -218,5 +244,5 @@ Result structure_compare(const TraceStore *a, const TraceStore *b, int width, in
     const TraceStore *const stores[] = {a, b};
     Comparison comparison = {same, out};
     *out = (StructureCounts){0};
-    return structure_visit(stores, 2, width, height, compare_pixel, &comparison);
+    return structure_visit(stores, 2, -1, width, height, compare_pixel, &comparison);
 }

@@ -22,6 +22,7 @@ typedef struct StructurePixel {
     uint32_t opaque; /* UINT32_MAX: none */
     uint32_t *ids;   /* of the transparent fragments, front to back */
     int count;
+    uint32_t *depths; /* theirs, as stored; NULL where they are not asked for */
 } StructurePixel;
 
 /* pixel: row · width + column, row 0 at the top; sides: one for each store. */
@@ -32,9 +33,13 @@ enum {
 };
 
 /* Calls visit for every pixel, with what its opaque.primitive and peel.K.primitive, K = 0, 1, …,
- * are in each of up to STRUCTURE_STORES_MAX stores of one size; visit may change the ids. */
-Result structure_visit(const TraceStore *const stores[], int count, int width, int height,
+ * are in each of up to STRUCTURE_STORES_MAX stores of one size, and peel.K.depth in store `deep`,
+ * unless that is −1; visit may change the ids. */
+Result structure_visit(const TraceStore *const stores[], int count, int deep, int width, int height,
                        StructureVisit visit, void *context);
+
+/* Where id is among count ids; -1: it is not. */
+int structure_find(const uint32_t *ids, int count, uint32_t id);
 
 /* A layer that the raw peel test took again is no fragment more: drops repetitions from the ids and
  * returns how many are left. */

@@ -418,8 +418,8 @@ static Result run(Study *study)
     conclude(study);
     const TraceStore *const stores[] = {study->actual_trace, study->truth_trace, study->best_trace,
                                         study->stored_trace};
-    return structure_visit(stores, study->stored_trace ? 4 : 3, desc->width, desc->height, classify,
-                           study);
+    int count = study->stored_trace ? 4 : 3;
+    return structure_visit(stores, count, count - 1, desc->width, desc->height, classify, study);
 }
 
 Result budget_run(const Scene *scene, const RenderDesc *desc, Renderer ref, Renderer truth,

@@ -34,25 +34,28 @@ const char *class_text(PixelClass class)
     return classes[class].text;
 }
 
-/* -1: it has not. */
-static int find(const StructurePixel *side, uint32_t id)
-{
-    for (int i = 0; i < side->count; i++)
-        if (side->ids[i] == id)
-            return i;
-    return -1;
-}
-
 static bool has(const StructurePixel *side, uint32_t id)
 {
-    return find(side, id) >= 0;
+    return structure_find(side->ids, side->count, id) >= 0;
 }
 
-/* Why `actual` has not truth's fragment number `index`; possible: what it can have. */
-static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int index,
-                       const StructurePixel *actual, const StructurePixel *possible)
+/* Whether another fragment has the same depth as fragment `at`: by the raw test also the next one,
+ * which a fetch may round to the same float. */
+static bool is_tied(const RenderDesc *desc, const StructurePixel *side, int at)
 {
-    int at = find(possible, truth->ids[index]);
+    uint32_t depth = side->depths[at], apart = desc->peel_test == PEEL_TEST_RAW;
+    for (int i = 0; i < side->count; i++)
+        if (i != at && side->depths[i] + apart - depth <= 2 * apart)
+            return true;
+    return false;
+}
+
+/* Why `actual` has not truth's fragment number `index`; possible: what it can have; repeated: it
+ * had a layer twice. */
+static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int index,
+                       const StructurePixel *actual, bool repeated, const StructurePixel *possible)
+{
+    int at = structure_find(possible->ids, possible->count, truth->ids[index]);
     if (at < 0)
         return CLASS_COVERAGE;
     /* What is behind the last pass has nothing behind it, in the order that single precision sees,
@@ -60,26 +63,27 @@ static PixelClass lost(const RenderDesc *desc, const StructurePixel *truth, int 
     bool ends = desc->method == METHOD_DUAL || desc->method == METHOD_FORWARD_DUAL, last = true;
     for (int i = at + 1; i < possible->count; i++)
         last = last && !has(actual, possible->ids[i]);
+    if (repeated && last)
+        return CLASS_REPEATED;
     if (desc->passes && (last || ends))
         return CLASS_LOST_LIMIT;
     if (desc->method == METHOD_LINKED_LIST)
         return desc->nodes_per_pixel ? CLASS_LOST_OVERFLOW : CLASS_UNEXPLAINED;
     if (desc->bias > 0.0f)
         return CLASS_LOST_BIAS;
-    return method_info(desc->method)->loses_ties ? CLASS_LOST_TIE : CLASS_UNEXPLAINED;
+    if (method_info(desc->method)->loses_ties && is_tied(desc, possible, at))
+        return CLASS_LOST_TIE;
+    /* Passes end with one that yields nothing new, which is no layer any more. */
+    return desc->peel_test == PEEL_TEST_RAW && last ? CLASS_REPEATED : CLASS_UNEXPLAINED;
 }
 
-/* Why `actual` has not the same fragments as truth; CLASS_EQUAL: it has. */
-static PixelClass class_of_set(const RenderDesc *desc, const StructurePixel *actual,
-                               const StructurePixel *truth, const StructurePixel *possible)
+/* The first fragment of `whole` that `side` has not; −1: it has all. */
+static int first_missing(const StructurePixel *side, const StructurePixel *whole)
 {
-    for (int i = 0; i < truth->count; i++)
-        if (!has(actual, truth->ids[i]))
-            return lost(desc, truth, i, actual, possible);
-    for (int i = 0; i < actual->count; i++)
-        if (!has(truth, actual->ids[i]))
-            return CLASS_COVERAGE;
-    return CLASS_EQUAL;
+    for (int i = 0; i < whole->count; i++)
+        if (!has(side, whole->ids[i]))
+            return i;
+    return -1;
 }
 
 PixelClass class_of_fragments(const RenderDesc *desc, StructurePixel *actual,
@@ -91,12 +95,14 @@ PixelClass class_of_fragments(const RenderDesc *desc, StructurePixel *actual,
     int count = structure_drop_repetitions(actual->ids, actual->count);
     bool repeated = count != actual->count;
     actual->count = count;
-    PixelClass class = class_of_set(desc, actual, truth, stored);
-    /* What desc's depth cannot have, as it is hidden by rounding, single precision may. */
-    if (class == CLASS_COVERAGE && class_of_set(desc, actual, truth, best) != CLASS_COVERAGE)
-        return CLASS_DEPTH;
-    if (class != CLASS_EQUAL)
-        return class;
+    int missing = first_missing(actual, truth);
+    if (missing >= 0) {
+        PixelClass class = lost(desc, truth, missing, actual, repeated, stored);
+        /* What desc's depth cannot have, as it is hidden by rounding, single precision may. */
+        return class == CLASS_COVERAGE && has(best, truth->ids[missing]) ? CLASS_DEPTH : class;
+    }
+    if (first_missing(truth, actual) >= 0)
+        return CLASS_COVERAGE;
     if (repeated)
         return CLASS_REPEATED;
     return actual->count == truth->count &&

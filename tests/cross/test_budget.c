@@ -136,6 +136,31 @@ START_TEST(test_depth)
 }
 END_TEST
 
+/* The raw test compares a depth with what was stored of it, which rounding made nearer: the first
+ * of two layers is peeled again and again, the second never. */
+START_TEST(test_repeated)
+{
+    static Layers layers;
+    RenderDesc desc = layers_desc();
+    Budget budget;
+    desc.depth = FORMAT_D16;
+    desc.peel_test = PEEL_TEST_RAW;
+    uint64_t repeated = 0;
+    for (int i = 0; i < 8; i++) {
+        const double depths[] = {2.0 + 1e-4 * i, 6.0};
+        layers_make(2, depths, &layers);
+        run(&layers.scene, &desc, &budget);
+        uint64_t lost = budget.counts[CLASS_REPEATED];
+        ck_assert(lost == 0 || lost == PIXELS);
+        ck_assert_uint_eq(budget.counts[CLASS_LOST_TIE], 0);
+        repeated += lost > 0;
+        budget_free(&budget);
+    }
+    ck_assert_uint_gt(repeated, 0);
+    ck_assert_uint_lt(repeated, 8);
+}
+END_TEST
+
 /* A layer whose depth becomes that of the opaque surface: no method has it. */
 START_TEST(test_depth_of_opaque)
 {
@@ -253,6 +278,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_one_cause, 0, 7);
     tcase_add_test(tcase, test_ties);
     tcase_add_test(tcase, test_depth);
+    tcase_add_test(tcase, test_repeated);
     tcase_add_loop_test(tcase, test_depth_of_opaque, 0, 3);
     tcase_add_test(tcase, test_clamp);
     tcase_add_test(tcase, test_seed);

@@ -10,6 +10,7 @@
 
 #include "bits.h"
 #include "paths.h"
+#include "possible.h"
 #include "truths.h"
 
 #include "frame/method.h"
@@ -67,6 +68,8 @@ typedef struct Truthful {
     const Scene *scene;
     const RenderDesc *desc; /* of the method in question */
     const Truths *truths;
+    Possible *possible;
+    RenderDesc best_desc, stored_desc;
     TraceStore *best, *stored;
     bool structure;    /* desc is not what truths compared: of fragments alone */
     const Image *mine; /* of a method without layers: its image; else NULL */
@@ -99,15 +102,64 @@ static bool same_bits(const Image *a, const Image *b, size_t pixel)
                   4 * sizeof(float)) == 0;
 }
 
+static bool same_fragments(const StructurePixel *a, const StructurePixel *b)
+{
+    return a->opaque == b->opaque && a->count == b->count &&
+           (a->count == 0 || memcmp(a->ids, b->ids, (size_t)a->count * sizeof *a->ids) == 0);
+}
+
+/* NULL, or what cannot be. */
+static const char *impossible(const Truthful *study, size_t pixel, const StructurePixel *sides)
+{
+    const StructurePixel *truth = &sides[SIDE_TRUTH], *stored = &sides[SIDE_STORED];
+    const char *what = NULL;
+    if (!same_fragments(&sides[SIDE_BEST], truth))
+        what = possible_all(study->possible, &study->best_desc, pixel, &sides[SIDE_BEST], truth);
+    if (!what && !same_fragments(stored, truth))
+        what = possible_all(study->possible, &study->stored_desc, pixel, stored, truth);
+    if (!what && !same_fragments(&sides[SIDE_BEST], truth))
+        what = possible_all(study->possible, NULL, pixel, truth, &sides[SIDE_BEST]);
+    return what;
+}
+
+/* The same of the method itself, repetitions dropped: its layers, and those that it lost as ties.
+ */
+static const char *impossible_layers(const Truthful *study, size_t pixel, PixelClass class,
+                                     const StructurePixel *sides)
+{
+    const StructurePixel *ref = &sides[SIDE_REF], *stored = &sides[SIDE_STORED];
+    const char *what = NULL;
+    if (!same_fragments(ref, stored))
+        what = possible_fragments(study->possible, study->desc, pixel, ref);
+    if (!what && class == CLASS_REPEATED && study->desc->peel_test != PEEL_TEST_RAW)
+        what = "a layer peeled twice by depths as they are stored";
+    /* Of all of its layers: beyond the limit, or a layer that is peeled for ever. */
+    bool behind = study->desc->passes > 0 || study->desc->peel_test == PEEL_TEST_RAW;
+    for (int i = stored->count; class == CLASS_LOST_TIE && i-- > 0 && !what;) {
+        bool there = structure_find(ref->ids, ref->count, stored->ids[i]) >= 0;
+        behind = behind && !there;
+        if (!there && !behind &&
+            !possible_tie(study->possible, study->desc, pixel, stored, stored->ids[i]))
+            what = "a layer lost that no other is as deep as";
+    }
+    return what;
+}
+
 static void visit(void *context, size_t pixel, StructurePixel *sides)
 {
     Truthful *study = context;
     const Truths *truths = study->truths;
+    const char *what = impossible(study, pixel, sides);
     PixelClass class = class_of_fragments(study->desc, &sides[SIDE_REF], &sides[SIDE_TRUTH],
                                           &sides[SIDE_BEST], &sides[SIDE_STORED]);
+    if (!what)
+        what = impossible_layers(study, pixel, class, sides);
     if (class == CLASS_UNEXPLAINED)
-        unexplained(study, pixel, "a fragment is missing, and nothing explains it");
-    else if (class == CLASS_EQUAL && study->structure)
+        what = "a fragment is missing, and nothing explains it";
+    if (what) {
+        class = CLASS_UNEXPLAINED;
+        unexplained(study, pixel, what);
+    } else if (class == CLASS_EQUAL && study->structure)
         class = CLASS_METHOD;
     else if (class == CLASS_EQUAL && !same_bits(&truths->ref.final, &truths->truth.final, pixel)) {
         class = within_bound(truths, pixel) ? CLASS_ROUNDING : CLASS_UNEXPLAINED;
@@ -147,17 +199,21 @@ static Result compare_sides(Truthful *study, const TraceStore *ref, StructureVis
                                              [SIDE_TRUTH] = study->truths->truth_trace,
                                              [SIDE_BEST] = study->best,
                                              [SIDE_STORED] = study->stored};
-    return structure_visit(stores, SIDES, study->desc->width, study->desc->height, visitor, study);
+    return structure_visit(stores, SIDES, SIDE_STORED, study->desc->width, study->desc->height,
+                           visitor, study);
 }
 
 static Result render_helpers(Truthful *study)
 {
-    RenderDesc best = budget_best(study->desc, METHOD_PEEL_ID), stored = best;
+    RenderDesc *best = &study->best_desc, *stored = &study->stored_desc;
     Frame frames[2] = {0};
-    stored.depth = study->desc->depth;
-    Result result = render_trace(study->scene, &best, &study->best, &frames[0]);
+    *best = *stored = budget_best(study->desc, METHOD_PEEL_ID);
+    stored->depth = study->desc->depth;
+    Result result = possible_create(study->scene, study->desc, &study->possible);
     if (result == RESULT_OK)
-        result = render_trace(study->scene, &stored, &study->stored, &frames[1]);
+        result = render_trace(study->scene, best, &study->best, &frames[0]);
+    if (result == RESULT_OK)
+        result = render_trace(study->scene, stored, &study->stored, &frames[1]);
     for (int i = 0; i < 2; i++)
         frame_free(&frames[i]);
     return result;
@@ -212,6 +268,7 @@ static Result run_truth(const Scene *scene, const RenderDesc *desc, TrialFigures
         result = compare_sides(&study, truths.ref_trace, visit);
     if (result == RESULT_OK && bounded.method != desc->method)
         result = run_unbounded(&study, desc);
+    possible_destroy(study.possible);
     store_destroy(study.best);
     store_destroy(study.stored);
     truths_free(&truths);
