@@ -88,7 +88,7 @@ uint32_t soup_primitive(const Soup *soup, uint32_t triangle)
     return draw->draw->first_primitive + (triangle - draw->first_triangle);
 }
 
-uint32_t soup_triangle(const Soup *soup, uint32_t primitive)
+uint32_t soup_triangle_of(const Soup *soup, uint32_t primitive)
 {
     const SoupDraw *draw = soup->draws;
     while (primitive - draw->draw->first_primitive >= draw->mesh->triangle_count)

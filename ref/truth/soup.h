@@ -53,8 +53,8 @@ const SoupDraw *soup_draw(const Soup *soup, uint32_t triangle);
 void soup_vertices(const Soup *soup, uint32_t triangle, const SoupVertex *out[3]);
 /* coverage_setup_snapped for its triangle's vertices. */
 bool soup_coverage(const Soup *soup, const SoupVertex *const vertices[3], Coverage *out);
-uint32_t soup_primitive(const Soup *soup, uint32_t triangle); /* the frame's primitive id */
-uint32_t soup_triangle(const Soup *soup, uint32_t primitive); /* of an id that a frame has */
+uint32_t soup_primitive(const Soup *soup, uint32_t triangle);    /* the frame's primitive id */
+uint32_t soup_triangle_of(const Soup *soup, uint32_t primitive); /* of an id that a frame has */
 /* The triangle's material where its corners have these weights (exact.h), textures included. */
 void soup_material(const Soup *soup, uint32_t triangle, const double weight[3],
                    MaterialSample *out);

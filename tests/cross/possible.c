@@ -46,7 +46,7 @@ static Place place(const Possible *possible, const RenderDesc *desc, size_t pixe
     BoundFragment found;
     size_t width = (size_t)possible->view.width;
     bound_fragment(&possible->soup, desc ? desc : possible->desc,
-                   soup_triangle(&possible->soup, id), (int)(pixel % width),
+                   soup_triangle_of(&possible->soup, id), (int)(pixel % width),
                    possible->view.height - 1 - (int)(pixel / width), &found);
     const double *depth = desc ? found.stored : found.exact;
     if (possible->desc->depth_range == DEPTH_RANGE_REVERSED)
