@@ -1,6 +1,6 @@
 /* The bounds of interpolated surfaces against what ref interpolates: every position, normal, colour
- * and roughness in the G-buffers of random soups. Here a forgotten rounding shows that is too small
- * to show in a lit pixel.
+ * and roughness in the G-buffers of random soups, and the depth. Here a forgotten rounding shows
+ * that is too small to show in a lit pixel.
  *
  * PEEL_TEST_SEED=N runs one soup; PEEL_TEST_COUNT=N that many, from there or from 1. */
 /* The random scenes, beside the truth's triangles of the same name. */
@@ -102,6 +102,19 @@ static void fetch(const Case *of, const Image images[PARTS], const Image *depth,
     op_leave(saved);
 }
 
+/* It may cover the pixel, and have that depth there. */
+static void check_depth(const Case *of, const Fragment *fragment, int x, int row,
+                        const Image *depth)
+{
+    BoundFragment bound;
+    bound_fragment(&of->soup, &of->desc, fragment->triangle, x, SIZE - 1 - row, &bound);
+    double z = (double)depth_fetch(depth->format, *(const uint32_t *)image_pixel(depth, x, row));
+    ck_assert_msg(bound.possible && z >= bound.stored[0] && z <= bound.stored[1],
+                  "PEEL_TEST_SEED=%llu: %d, %d: depth %.9g, expected %.17g to %.17g%s",
+                  (unsigned long long)of->seed, x, row, z, bound.stored[0], bound.stored[1],
+                  bound.possible ? "" : " and nothing");
+}
+
 static void check_fragment(const Case *of, const Fragment *fragment, int x, int row,
                            const Image images[PARTS], const Image *depth)
 {
@@ -112,6 +125,7 @@ static void check_fragment(const Case *of, const Fragment *fragment, int x, int 
     const Bounded *bounds[PARTS] = {surface.position, surface.normal, surface.diffuse, material};
     float values[PARTS][4];
     fetch(of, images, depth, x, row, values);
+    check_depth(of, fragment, x, row, depth);
     for (int part = 0; part < PARTS; part++)
         for (int i = 0; i < 3 + (part == DIFFUSE); i++)
             check_value(of, (Part)part, x, row, values[part][i], bounds[part][i], &tallies[part]);
