@@ -140,13 +140,12 @@ static void unknown(Bounded *x)
 }
 
 static Point find_point(const Triangle *triangle, bool textured, bool has_depth, bool fused, int x,
-                        int y)
+                        int y, SinglePixel *pixel)
 {
     const BoundedCorner *c = triangle->corner;
     Point point;
-    SinglePixel pixel;
     Bounded weight[3], *at = point.attribute;
-    set_pixel(triangle, x, y, weight, &pixel);
+    set_pixel(triangle, x, y, weight, pixel);
     for (int i = 0; i < 3; i++) {
         at[SINGLE_POSITION + i] =
             sum3(weight, c[0].position[i], c[1].position[i], c[2].position[i]);
@@ -154,9 +153,9 @@ static Point find_point(const Triangle *triangle, bool textured, bool has_depth,
     }
     for (int i = 0; i < 2; i++)
         at[SINGLE_UV + i] = mix(weight, c[0].uv[i], c[1].uv[i], c[2].uv[i]);
-    point.depth = bounded_mul(mix(weight, c[0].z, c[1].z, c[2].z), pixel.inverse_w);
+    point.depth = bounded_mul(mix(weight, c[0].z, c[1].z, c[2].z), pixel->inverse_w);
     /* Where the plane has no depth the truth takes a nearby point (exact.h). */
-    if (!(pixel.inverse_w.value > pixel.inverse_w.exact)) {
+    if (!(pixel->inverse_w.value > pixel->inverse_w.exact)) {
         for (int i = 0; i < SINGLE_COMPONENTS; i++)
             unknown(&at[i]);
         unknown(&point.depth);
@@ -164,7 +163,7 @@ static Point find_point(const Triangle *triangle, bool textured, bool has_depth,
         return point;
     }
     SingleViewport viewport = single_viewport(triangle->view, fused);
-    single_errors(&viewport, triangle->single, &pixel, textured ? SINGLE_COMPONENTS : SINGLE_UV, at,
+    single_errors(&viewport, triangle->single, pixel, textured ? SINGLE_COMPONENTS : SINGLE_UV, at,
                   has_depth ? &point.depth : NULL, &point.facing_certain);
     return point;
 }
@@ -181,9 +180,7 @@ void bound_fragment(const Soup *soup, const RenderDesc *desc, uint32_t triangle,
 {
     Triangle exact = make_triangle(soup, triangle);
     SinglePixel pixel;
-    Bounded weight[3];
-    Point point = find_point(&exact, false, true, !desc->unfused, x, y);
-    set_pixel(&exact, x, y, weight, &pixel);
+    Point point = find_point(&exact, false, true, !desc->unfused, x, y, &pixel);
     SingleViewport viewport = single_viewport(exact.view, !desc->unfused);
     SingleCover cover = single_cover(&viewport, exact.single, &pixel);
     const Draw *draw = exact.draw->draw;
@@ -227,7 +224,8 @@ void bound_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fra
     bool textured = material->base_color_texture || material->metallic_roughness_texture;
     bool forward = desc->method == METHOD_FORWARD;
     bool from_depth = !forward && render_desc_layout(desc).position == FORMAT_NONE;
-    Point point = find_point(&triangle, textured, from_depth, !desc->unfused, x, y);
+    SinglePixel pixel;
+    Point point = find_point(&triangle, textured, from_depth, !desc->unfused, x, y, &pixel);
     bool faced = desc->normals == NORMALS_FACED, turned = faced && fragment->back;
     Bounded normal[3];
     for (int i = 0; i < 3; i++) {
