@@ -1,6 +1,7 @@
 #!/bin/sh
 # How much of ref, src and gl the tests of CI run: a table by folder, and the files that miss most.
-# Lines of children that end by _exit are not counted.
+# Lines of children that end by _exit are not counted, nor those of tests in which a program cannot
+# write its counts without a message (no_space, surroundings) or the library needs gcc's (package).
 #
 #   coverage.sh [SOURCE_DIR] [REGEX]   by all tests, or by those whose names match REGEX
 #
@@ -12,11 +13,13 @@ needs gcovr gcovr
 build coverage
 find "$directory" -name '*.gcda' -delete
 export CK_TIMEOUT_MULTIPLIER=10
-run_tests '^$'
+run_tests '^(no_space|surroundings|package)$'
 
 echo "$name: counting"
-(cd "$root" && gcovr --root . --filter src/ --filter ref/ --filter gl/ -j "$(nproc)" \
-    --csv "$logs/lines.csv" "$directory/src" "$directory/gl") >"$logs/gcovr.log" 2>&1 || {
+# gcov may give a count of branches below 0, of which gcovr would hang; lines are what is wanted.
+(cd "$root" && gcovr --gcov-ignore-parse-errors --root . --filter src/ --filter ref/ --filter gl/ \
+    -j "$(nproc)" --csv "$logs/lines.csv" "$directory/src" "$directory/gl") \
+    >"$logs/gcovr.log" 2>&1 || {
     tail -5 "$logs/gcovr.log" >&2
     stop 'gcovr failed'
 }
