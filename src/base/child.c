@@ -81,7 +81,7 @@ static size_t data_bytes(void)
     if (file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) != 1)
         pages = 0;
     if (file)
-        fclose(file);
+        (void)fclose(file);
     return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
