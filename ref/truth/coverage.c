@@ -147,13 +147,13 @@ static int64_t max64(int64_t a, int64_t b)
     return a > b ? a : b;
 }
 
-/* First and last pixel whose centres lie in low … high (subpixels), one subpixel more at each
+/* First and last pixel whose centres lie in least … most (subpixels), one subpixel more at each
  * side, inside the viewport. */
-static void pixel_range(int64_t low, int64_t high, int size, int *first, int *last)
+static void pixel_range(int64_t least, int64_t most, int size, int *first, int *last)
 {
     /* Shifted to be positive: division then rounds down. */
-    int64_t from = (low - 1 + SUBPIXELS + SUBPIXELS - 1) / SUBPIXELS - 1;
-    int64_t to = (high + 1 + SUBPIXELS) / SUBPIXELS - 1;
+    int64_t from = (least - 1 + SUBPIXELS + SUBPIXELS - 1) / SUBPIXELS - 1;
+    int64_t to = (most + 1 + SUBPIXELS) / SUBPIXELS - 1;
     *first = (int)max64(from, 0);
     *last = (int)min64(to, size - 1);
 }

@@ -76,10 +76,12 @@ static void put_warning(void *context, const char *line)
 /* Bytes of heap and private mappings that the process has; 0 where the system does not tell. */
 static size_t data_bytes(void)
 {
+    char text[256] = "", *at = text;
     unsigned long pages = 0;
     FILE *file = fopen("/proc/self/statm", "r");
-    if (file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) != 1)
-        pages = 0;
+    bool read = file && fgets(text, sizeof text, file);
+    for (int field = 0; read && field < 6; field++)
+        pages = strtoul(at, &at, 10);
     if (file)
         (void)fclose(file);
     return pages * (size_t)sysconf(_SC_PAGESIZE);

@@ -46,7 +46,7 @@ void vector_read_note(const char *text, char out[VECTOR_NOTE])
     size_t length = 0;
     for (text += strspn(text, " \t"); *text && length < VECTOR_NOTE - 1; text++) {
         bool plain = *text >= ' ' && *text <= '~' && *text != '"' && *text != '\\';
-        out[length++] = plain ? *text : '?';
+        out[length++] = (char)(plain ? *text : '?');
     }
     while (length && out[length - 1] == ' ')
         length--;

@@ -203,7 +203,7 @@ static Result put_result(const VectorReader *reader, const json_t *array, int la
                          VectorSequence *out)
 {
     PixelFormat format = reader->header.spec.format;
-    uint32_t bits[4];
+    uint32_t bits[4] = {0};
     Result result = take_pixel(reader, array, "result", bits);
     for (int c = 0; c < 4 && result == RESULT_OK; c++)
         format_set_bits(format, out->results + (size_t)layer * format_pixel_bytes(format), c,
