@@ -21,7 +21,7 @@ static double value_of(const BenchReport *report, const BenchRow *row, BenchAxis
 {
     switch (axis) {
     case BENCH_PASSES:
-        return row->passes ? row->passes : NAN;
+        return row->passes ? (double)row->passes : (double)NAN;
     case BENCH_LIGHTS:
         return row->lights;
     case BENCH_TRIANGLES:

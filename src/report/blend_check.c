@@ -123,9 +123,8 @@ static const char *largest(const BlendReport *report, const BlendRuleTally *rule
 {
     char number[SUMMARY_NUMBER];
     bool real = rule->info->api == API_SUITE && !format_info(report->format)->unorm_max;
-    if (!rule->judged)
-        snprintf(out, BLEND_TEXT, "-");
-    else if (rule->info->allowed[0] == 'n') /* a count */
+    bool count = rule->info->allowed[0] == 'n';
+    if (!rule->judged || count)
         snprintf(out, BLEND_TEXT, "-");
     else if (!(rule->largest_real < (double)INFINITY))
         snprintf(out, BLEND_TEXT, "not finite");

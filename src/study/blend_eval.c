@@ -37,10 +37,10 @@ bool blend_eval_is_over(const BlendEquation *equation)
 
 void blend_eval_cleared(const BlendEquation *equation, float out[4])
 {
-    bool ones = equation_id(equation) == EQUATION_PRODUCT;
+    float color = equation_id(equation) == EQUATION_PRODUCT ? 1.0f : 0.0f;
     for (int i = 0; i < 3; i++)
-        out[i] = ones;
-    out[3] = ones || blend_eval_alpha(equation) == EVAL_TRANSMITTANCE;
+        out[i] = color;
+    out[3] = blend_eval_alpha(equation) == EVAL_TRANSMITTANCE ? 1.0f : color;
 }
 
 /* ---- exact operations ---- */

@@ -195,7 +195,7 @@ static Result try_method(Search *search, MethodId method)
                                  0,         0,
                                  0,         0,
                                  false,     false};
-            double error;
+            double error = (double)INFINITY;
             Result result = try(search, choice, &error);
             bool reached = error <= search->out->max_error;
             if (result == RESULT_OK && reached && space->passes < 0)
