@@ -101,7 +101,7 @@ size_t describe_options(const DescribedCommand *command, DescribedOption out[DES
 
 char describe_letter(const struct argp_option *option)
 {
-    return option->key > ' ' && option->key < 0x7f ? (char)option->key : 0;
+    return (char)(option->key > ' ' && option->key < 0x7f ? option->key : 0);
 }
 
 /* ---- values --------------------------------------------------------------------------------- */
