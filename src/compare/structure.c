@@ -31,7 +31,7 @@ static void layers_free(Layers *layers)
     free(layers->depths);
 }
 
-/* Indices of buffers peel.K.`what`, to *out, which the caller frees; returns how many. */
+/* Indices of buffers peel.K.`what`, to *out, which the caller frees, and how many. */
 static Result find_layers(const TraceStore *store, const char *what, int **out, int *count)
 {
     char name[48];

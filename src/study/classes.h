@@ -31,8 +31,7 @@ typedef enum PixelClass {
 /* By the fragments of a pixel: `actual` is of desc; `best` of peel-id in the best formats, which
  * tells what single precision can have, and `stored` the same in desc's format of depth, what that
  * can have, with its depths. CLASS_EQUAL where truth has the same in the same order. Drops
- * repetitions from actual.
- */
+ * repetitions from actual. */
 PixelClass class_of_fragments(const RenderDesc *desc, StructurePixel *actual,
                               const StructurePixel *truth, const StructurePixel *best,
                               const StructurePixel *stored);

@@ -3,9 +3,10 @@
  * is replaced by its sister that has one, with the same settings. Where they do not, the reason
  * must be one of study/classes.h, found with two more renderings, both of peel-id, which has
  * neither ties nor limits: one in 32 bits, which tells what single precision can have, and one in
- * the frame's own format of depth, which tells what that format hides. And of a method without
- * bound: its layers are classified in the same way; one that has none must leave every pixel alone
- * in which nothing transparent is. */
+ * the frame's own format of depth, which tells what that format hides; and what each of them has
+ * there, and truth, must be possible by the bounds of every triangle (possible.h). And of a method
+ * without bound: its layers are classified in the same way; one that has none must leave every
+ * pixel alone in which nothing transparent is. */
 #include "trial.h"
 
 #include "bits.h"
