@@ -39,10 +39,10 @@ static bool fill_edges(const Setup *setup, int x, int y, HistoryFragment *out, b
     *covered = out->has_edges = true;
     for (int i = 0; i < 3; i++) {
         const Edge *edge = &setup->edge[i];
-        int64_t value = edge->c + 256 * (edge->b * y - edge->a * x);
+        uint64_t value = setup_edge_at(edge, x, y);
         out->owned[i] = edge->a < 0 || (edge->a == 0 && edge->b >= 0);
-        out->edge[i] = value - out->owned[i];
-        *covered = *covered && value > 0;
+        out->edge[i] = (int64_t)(value - out->owned[i]);
+        *covered = *covered && (int64_t)value > 0;
         if (out->edge[i] < 0)
             return false;
     }

@@ -51,7 +51,8 @@ enum {
 bool setup_is_wide(const Vertex *const corners[3]);
 
 /* Of two snapped coordinates, wrapping as the driver does: a vertex with w = 0 snaps to INT32_MIN.
- * Those of clipped vertices lie within the viewport, and every product here fits. */
+ * Those of clipped vertices lie within the viewport, and every product here fits. Where it does
+ * not, values of edges wrap, too. */
 static inline int32_t setup_difference(int32_t a, int32_t b)
 {
     return (int32_t)((uint32_t)a - (uint32_t)b);
@@ -65,6 +66,13 @@ static inline Edge setup_edge(const Vertex *from, const Vertex *to)
     if (a < 0 || (a == 0 && b >= 0))
         c++;
     return (Edge){a, b, c};
+}
+
+/* Edge.c + 256·(b·y − a·x), as an int64_t: above 0 where pixel (x, y) is inside. */
+static inline uint64_t setup_edge_at(const Edge *edge, int x, int y)
+{
+    uint64_t steps = (uint64_t)edge->b * (uint64_t)y - (uint64_t)edge->a * (uint64_t)x;
+    return (uint64_t)edge->c + 256 * steps;
 }
 
 /* The plane through the values p[i] at setup->corner[i]. */
@@ -134,14 +142,14 @@ static inline __attribute__((always_inline)) void setup_visit(const Setup *setup
     int y1 = setup->box.y1 < rect.y1 ? setup->box.y1 : rect.y1;
     const Edge *e = setup->edge;
     for (int y = y0; y <= y1; y++) {
-        int64_t value[3];
+        uint64_t value[3];
         for (int i = 0; i < 3; i++)
-            value[i] = e[i].c + 256 * (e[i].b * y - e[i].a * x0);
+            value[i] = setup_edge_at(&e[i], x0, y);
         for (int x = x0; x <= x1; x++) {
-            if (value[0] > 0 && value[1] > 0 && value[2] > 0)
+            if ((int64_t)value[0] > 0 && (int64_t)value[1] > 0 && (int64_t)value[2] > 0)
                 visit(context, setup, x, y);
             for (int i = 0; i < 3; i++)
-                value[i] -= 256 * e[i].a;
+                value[i] -= 256 * (uint64_t)e[i].a;
         }
     }
 }
