@@ -96,6 +96,12 @@ static void gather(const Layers *layers, int p, StructurePixel *out)
     }
 }
 
+bool structure_same(const StructurePixel *a, const StructurePixel *b)
+{
+    return a->opaque == b->opaque && a->count == b->count &&
+           (a->count == 0 || memcmp(a->ids, b->ids, (size_t)a->count * sizeof *a->ids) == 0);
+}
+
 int structure_find(const uint32_t *ids, int count, uint32_t id)
 {
     for (int i = 0; i < count; i++)
@@ -218,18 +224,13 @@ typedef struct Comparison {
 
 static StructureSame compare_sides(StructurePixel *a, StructurePixel *b, StructureCounts *out)
 {
-    bool flip = a->opaque != b->opaque;
-    out->opaque_flips += flip;
-    if (a->count != b->count ||
-        (a->count && memcmp(a->ids, b->ids, (size_t)a->count * sizeof(uint32_t)) != 0)) {
-        a->count = structure_drop_repetitions(a->ids, a->count);
-        b->count = structure_drop_repetitions(b->ids, b->count);
-        count_differences(a->ids, a->count, b->ids, b->count, out);
-        return STRUCTURE_DIFFERS;
-    }
-    if (flip)
-        return STRUCTURE_DIFFERS;
-    return a->count == 0 && a->opaque == NONE ? STRUCTURE_EMPTY : STRUCTURE_SAME;
+    if (structure_same(a, b))
+        return a->count == 0 && a->opaque == NONE ? STRUCTURE_EMPTY : STRUCTURE_SAME;
+    out->opaque_flips += a->opaque != b->opaque;
+    a->count = structure_drop_repetitions(a->ids, a->count);
+    b->count = structure_drop_repetitions(b->ids, b->count);
+    count_differences(a->ids, a->count, b->ids, b->count, out);
+    return STRUCTURE_DIFFERS;
 }
 
 static void compare_pixel(void *context, size_t pixel, StructurePixel *sides)

@@ -38,6 +38,9 @@ enum {
 Result structure_visit(const TraceStore *const stores[], int count, int deep, int width, int height,
                        StructureVisit visit, void *context);
 
+/* The opaque triangle, the transparent fragments and their order. */
+bool structure_same(const StructurePixel *a, const StructurePixel *b);
+
 /* Where id is among count ids; -1: it is not. */
 int structure_find(const uint32_t *ids, int count, uint32_t id);
 

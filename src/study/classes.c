@@ -2,8 +2,6 @@
 
 #include "frame/method.h"
 
-#include <string.h>
-
 static const struct {
     const char *key, *text;
 } classes[CLASS_COUNT] = {
@@ -43,10 +41,12 @@ static bool has(const StructurePixel *side, uint32_t id)
  * which a fetch may round to the same float. */
 static bool is_tied(const RenderDesc *desc, const StructurePixel *side, int at)
 {
-    uint32_t depth = side->depths[at], apart = desc->peel_test == PEEL_TEST_RAW;
-    for (int i = 0; i < side->count; i++)
-        if (i != at && side->depths[i] + apart - depth <= 2 * apart)
+    uint32_t depth = side->depths[at], most = desc->peel_test == PEEL_TEST_RAW ? 1 : 0;
+    for (int i = 0; i < side->count; i++) {
+        uint32_t other = side->depths[i];
+        if (i != at && (other > depth ? other - depth : depth - other) <= most)
             return true;
+    }
     return false;
 }
 
@@ -105,8 +105,5 @@ PixelClass class_of_fragments(const RenderDesc *desc, StructurePixel *actual,
         return CLASS_COVERAGE;
     if (repeated)
         return CLASS_REPEATED;
-    return actual->count == truth->count &&
-                   memcmp(actual->ids, truth->ids, (size_t)count * sizeof *actual->ids) == 0
-               ? CLASS_EQUAL
-               : CLASS_INVERSION;
+    return structure_same(actual, truth) ? CLASS_EQUAL : CLASS_INVERSION;
 }

@@ -103,23 +103,19 @@ static bool same_bits(const Image *a, const Image *b, size_t pixel)
                   4 * sizeof(float)) == 0;
 }
 
-static bool same_fragments(const StructurePixel *a, const StructurePixel *b)
-{
-    return a->opaque == b->opaque && a->count == b->count &&
-           (a->count == 0 || memcmp(a->ids, b->ids, (size_t)a->count * sizeof *a->ids) == 0);
-}
-
 /* NULL, or what cannot be. */
 static const char *impossible(const Truthful *study, size_t pixel, const StructurePixel *sides)
 {
-    const StructurePixel *truth = &sides[SIDE_TRUTH], *stored = &sides[SIDE_STORED];
+    const StructurePixel *truth = &sides[SIDE_TRUTH], *best = &sides[SIDE_BEST],
+                         *stored = &sides[SIDE_STORED];
     const char *what = NULL;
-    if (!same_fragments(&sides[SIDE_BEST], truth))
-        what = possible_all(study->possible, &study->best_desc, pixel, &sides[SIDE_BEST], truth);
-    if (!what && !same_fragments(stored, truth))
+    if (!structure_same(best, truth)) {
+        what = possible_all(study->possible, &study->best_desc, pixel, best, truth);
+        if (!what)
+            what = possible_all(study->possible, NULL, pixel, truth, best);
+    }
+    if (!what && !structure_same(stored, truth))
         what = possible_all(study->possible, &study->stored_desc, pixel, stored, truth);
-    if (!what && !same_fragments(&sides[SIDE_BEST], truth))
-        what = possible_all(study->possible, NULL, pixel, truth, &sides[SIDE_BEST]);
     return what;
 }
 
@@ -130,7 +126,7 @@ static const char *impossible_layers(const Truthful *study, size_t pixel, PixelC
 {
     const StructurePixel *ref = &sides[SIDE_REF], *stored = &sides[SIDE_STORED];
     const char *what = NULL;
-    if (!same_fragments(ref, stored))
+    if (!structure_same(ref, stored))
         what = possible_fragments(study->possible, study->desc, pixel, ref);
     if (!what && class == CLASS_REPEATED && study->desc->peel_test != PEEL_TEST_RAW)
         what = "a layer peeled twice by depths as they are stored";
