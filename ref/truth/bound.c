@@ -1,10 +1,17 @@
 #include "ref/truth/bound.h"
 
+#include "base/memory.h"
 #include "frame/shading.h"
 #include "ref/truth/bound_store.h"
 #include "ref/truth/bound_texture.h"
 #include "ref/truth/radiance_bound.h"
 #include "ref/truth/single.h"
+
+#include <stdlib.h>
+
+enum {
+    KEPT = 128 /* triangles: those of some pixels of a row, layer by layer */
+};
 
 /* The exact triangle's corners, as the truth has them (soup.c). */
 typedef struct BoundedCorner {
@@ -16,8 +23,16 @@ typedef struct Triangle {
     const View *view;
     const SoupDraw *draw;
     BoundedCorner corner[3];
-    SingleVertex single[3];
+    SingleTriangle single;
 } Triangle;
+
+struct BoundTriangles {
+    const Soup *soup;
+    bool fused;
+    uint32_t number[KEPT]; /* of the soup */
+    bool used[KEPT];
+    Triangle kept[KEPT];
+};
 
 /* Where a pixel meets it. */
 typedef struct Point {
@@ -67,19 +82,53 @@ static BoundedCorner make_corner(const View *view, const Draw *draw, const float
     return corner;
 }
 
-static Triangle make_triangle(const Soup *soup, uint32_t triangle)
+static void make_triangle(const Soup *soup, bool fused, uint32_t number, Triangle *out)
 {
-    Triangle out = {.view = soup->view, .draw = soup_draw(soup, triangle)};
-    const Mesh *mesh = out.draw->mesh;
-    const uint32_t *index = &mesh->index[(size_t)(triangle - out.draw->first_triangle) * 3];
+    out->view = soup->view;
+    out->draw = soup_draw(soup, number);
+    out->single.viewport = single_viewport(soup->view, fused);
+    const Mesh *mesh = out->draw->mesh;
+    const uint32_t *index = &mesh->index[(size_t)(number - out->draw->first_triangle) * 3];
     for (int i = 0; i < 3; i++) {
         const float *position = &mesh->position[3 * (size_t)index[i]];
         const float *normal = &mesh->normal[3 * (size_t)index[i]];
         const float *uv = mesh->uv ? &mesh->uv[2 * (size_t)index[i]] : NULL;
-        out.corner[i] = make_corner(soup->view, out.draw->draw, position, normal, uv);
-        single_vertex(soup->view, out.draw->draw, position, normal, uv, &out.single[i]);
+        out->corner[i] = make_corner(soup->view, out->draw->draw, position, normal, uv);
+        single_vertex(soup->view, out->draw->draw, position, normal, uv, &out->single.vertex[i]);
     }
-    return out;
+    single_clipped(&out->single);
+}
+
+size_t bound_triangles_bytes(void)
+{
+    return sizeof(BoundTriangles);
+}
+
+BoundTriangles *bound_triangles_create(const Soup *soup, bool fused)
+{
+    BoundTriangles *triangles = memory_array(1, sizeof *triangles);
+    if (triangles) {
+        triangles->soup = soup;
+        triangles->fused = fused;
+    }
+    return triangles;
+}
+
+void bound_triangles_destroy(BoundTriangles *triangles)
+{
+    free(triangles);
+}
+
+static const Triangle *find_triangle(BoundTriangles *triangles, uint32_t number)
+{
+    uint32_t place = number % KEPT;
+    Triangle *kept = &triangles->kept[place];
+    if (!triangles->used[place] || triangles->number[place] != number) {
+        make_triangle(triangles->soup, triangles->fused, number, kept);
+        triangles->number[place] = number;
+        triangles->used[place] = true;
+    }
+    return kept;
 }
 
 /* p0 + (w1·(p1 − p0) + w2·(p2 − p0)) */
@@ -139,8 +188,9 @@ static void unknown(Bounded *x)
     x->exact = x->single = (double)INFINITY;
 }
 
-static Point find_point(const Triangle *triangle, bool textured, bool has_depth, bool fused, int x,
-                        int y, SinglePixel *pixel)
+/* used: SingleVertex's components whose errors are wanted end there. */
+static Point find_point(const Triangle *triangle, int used, bool has_depth, int x, int y,
+                        SinglePixel *pixel)
 {
     const BoundedCorner *c = triangle->corner;
     Point point;
@@ -162,9 +212,8 @@ static Point find_point(const Triangle *triangle, bool textured, bool has_depth,
         point.facing_certain = false;
         return point;
     }
-    SingleViewport viewport = single_viewport(triangle->view, fused);
-    single_errors(&viewport, triangle->single, pixel, textured ? SINGLE_COMPONENTS : SINGLE_UV, at,
-                  has_depth ? &point.depth : NULL, &point.facing_certain);
+    single_errors(&triangle->single, pixel, used, at, has_depth ? &point.depth : NULL,
+                  &point.facing_certain);
     return point;
 }
 
@@ -175,15 +224,14 @@ static void set_range(double value, double error, double range[2])
     range[1] = known ? value + error : (double)INFINITY;
 }
 
-void bound_fragment(const Soup *soup, const RenderDesc *desc, uint32_t triangle, int x, int y,
-                    BoundFragment *out)
+void bound_fragment(BoundTriangles *triangles, const RenderDesc *desc, uint32_t triangle, int x,
+                    int y, BoundFragment *out)
 {
-    Triangle exact = make_triangle(soup, triangle);
+    const Triangle *exact = find_triangle(triangles, triangle);
     SinglePixel pixel;
-    Point point = find_point(&exact, false, true, !desc->unfused, x, y, &pixel);
-    SingleViewport viewport = single_viewport(exact.view, !desc->unfused);
-    SingleCover cover = single_cover(&viewport, exact.single, &pixel);
-    const Draw *draw = exact.draw->draw;
+    Point point = find_point(exact, SINGLE_POSITION, true, x, y, &pixel);
+    SingleCover cover = single_cover(&exact->single, &pixel);
+    const Draw *draw = exact->draw->draw;
     bool kept = !draw->masked && (point.facing_certain || !draw->cull_back);
     out->possible = cover.possible;
     out->certain = cover.certain && kept;
@@ -216,16 +264,18 @@ static void store_surface(const View *view, const RenderDesc *desc, Bounded dept
     surface->occlusion = bound_store(layout.material, surface->occlusion);
 }
 
-void bound_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
-                   BoundedSurface *surface)
+void bound_surface(BoundTriangles *triangles, const RenderDesc *desc, const Fragment *fragment,
+                   int x, int y, BoundedSurface *surface)
 {
-    Triangle triangle = make_triangle(soup, fragment->triangle);
-    const Material *material = triangle.draw->material;
+    const Soup *soup = triangles->soup;
+    const Triangle *triangle = find_triangle(triangles, fragment->triangle);
+    const Material *material = triangle->draw->material;
     bool textured = material->base_color_texture || material->metallic_roughness_texture;
     bool forward = desc->method == METHOD_FORWARD;
     bool from_depth = !forward && render_desc_layout(desc).position == FORMAT_NONE;
     SinglePixel pixel;
-    Point point = find_point(&triangle, textured, from_depth, !desc->unfused, x, y, &pixel);
+    Point point =
+        find_point(triangle, textured ? SINGLE_COMPONENTS : SINGLE_UV, from_depth, x, y, &pixel);
     bool faced = desc->normals == NORMALS_FACED, turned = faced && fragment->back;
     Bounded normal[3];
     for (int i = 0; i < 3; i++) {
@@ -238,7 +288,7 @@ void bound_surface(const Soup *soup, const RenderDesc *desc, const Fragment *fra
     }
     radiance_normalize_bound(normal, surface->normal);
     bound_material(soup->textures, material, &point.attribute[SINGLE_UV], surface);
-    if (!triangle.draw->draw->transparent)
+    if (!triangle->draw->draw->transparent)
         surface->diffuse[3] = bounded_of(1.0);
     if (!forward)
         store_surface(soup->view, desc, point.depth, x, y, surface);
@@ -256,13 +306,14 @@ static void doubt(const Bounded before[4], Bounded rgba[4])
     }
 }
 
-void bound_blend(const Soup *soup, const RenderDesc *desc, const Fragment *fragment, int x, int y,
-                 Bounded rgba[4])
+void bound_blend(BoundTriangles *triangles, const RenderDesc *desc, const Fragment *fragment, int x,
+                 int y, Bounded rgba[4])
 {
+    const Soup *soup = triangles->soup;
     bool transparent = soup_draw(soup, fragment->triangle)->draw->transparent;
     BoundedForm form = {desc->shading, desc->ggx, desc->back_light && transparent};
     BoundedSurface surface;
-    bound_surface(soup, desc, fragment, x, y, &surface);
+    bound_surface(triangles, desc, fragment, x, y, &surface);
     const double test = (double)SHADING_ALPHA_TEST;
     Bounded alpha = surface.diffuse[3], source[4], before[4];
     double error = largest(alpha.exact, alpha.single);

@@ -27,7 +27,8 @@ enum {
     SINGLE_UV = 10,
     SINGLE_COMPONENTS = 12,
     SINGLE_CORNERS_MAX = 9,
-    SINGLE_DECISIONS_MAX = 8
+    SINGLE_DECISIONS_MAX = 8,
+    SINGLE_KEPT = 2
 };
 
 typedef struct SingleVertex {
@@ -45,6 +46,16 @@ typedef struct SinglePolygon {
     SingleVertex corner[SINGLE_CORNERS_MAX];
 } SinglePolygon;
 
+/* Magnitudes and errors of what setup has of a corner; dev as in SingleVertex. */
+typedef struct SingleCorner {
+    const SingleVertex *vertex;
+    double x, y;         /* window */
+    double dev_x, dev_y; /* of the stored window position from the exact point's */
+    double all_x, all_y; /* the same from (x, y): spread is in it */
+    double z, dev_z, all_z;
+    double g, dev_g, all_g, g_most; /* 1/w */
+} SingleCorner;
+
 typedef struct SingleViewport {
     double scale[3], translate[3];
     bool half_depth; /* the view volume is 0 ≤ z ≤ w */
@@ -57,11 +68,31 @@ SingleViewport single_viewport(const View *view, bool fused);
 void single_vertex(const View *view, const Draw *draw, const float position[3],
                    const float normal[3], const float *uv, SingleVertex *out);
 
-/* Clips triangle. Where rounding may decide on which side of a plane a corner lies, bit i of
+/* Clips a triangle. Where rounding may decide on which side of a plane a corner lies, bit i of
  * choices is the i-th such decision (set: inside); returns how many there were, more than
  * SINGLE_DECISIONS_MAX where that is not known. */
 int single_clip(const SingleViewport *viewport, const SingleVertex triangle[3], unsigned choices,
                 SinglePolygon *out);
+
+/* One of the polygons that clipping may leave, and its corners in the window. */
+typedef struct SingleFan {
+    int decisions; /* that rounding may take, of single_clip */
+    bool known;    /* the corners are */
+    SinglePolygon polygon;
+    SingleCorner corner[SINGLE_CORNERS_MAX]; /* points into polygon */
+} SingleFan;
+
+/* What no pixel changes: a triangle's exact corners, and the first of the polygons that clipping
+ * may leave. Not to be copied. */
+typedef struct SingleTriangle {
+    SingleViewport viewport;
+    SingleVertex vertex[3];
+    int kept;
+    SingleFan fan[SINGLE_KEPT];
+} SingleTriangle;
+
+/* triangle: viewport and vertices are set; sets the rest. */
+void single_clipped(SingleTriangle *triangle);
 
 /* The exact triangle around a pixel's centre, for gradients: homogeneous window coordinates less
  * the centre's. */
@@ -72,21 +103,19 @@ typedef struct SinglePixel {
     Bounded inverse_w;               /* at the centre */
 } SinglePixel;
 
-/* Whether the pipeline's pieces of the triangle may cover the pixel's centre, and whether they must,
- * whichever way each corner is rounded and snapped. */
+/* Whether the pipeline's pieces of the triangle may cover the pixel's centre, and whether they
+ * must, whichever way each corner is rounded and snapped. */
 typedef struct SingleCover {
     bool possible, certain;
 } SingleCover;
 
-SingleCover single_cover(const SingleViewport *viewport, const SingleVertex triangle[3],
-                         const SinglePixel *pixel);
+SingleCover single_cover(const SingleTriangle *triangle, const SinglePixel *pixel);
 
 /* attribute: value and exact at the pixel, SINGLE_POSITION … used − 1; fills their single with the
  * greatest over all pieces that may cover the pixel, ∞ where there is none. depth: the same of the
  * window depth, or NULL. *facing_certain: no piece is so thin that its facing depends on rounding.
- * triangle: the exact corners. */
-void single_errors(const SingleViewport *viewport, const SingleVertex triangle[3],
-                   const SinglePixel *pixel, int used, Bounded attribute[SINGLE_COMPONENTS],
-                   Bounded *depth, bool *facing_certain);
+ */
+void single_errors(const SingleTriangle *triangle, const SinglePixel *pixel, int used,
+                   Bounded attribute[SINGLE_COMPONENTS], Bounded *depth, bool *facing_certain);
 
 #endif

@@ -2,19 +2,9 @@
 
 #define U BOUNDED_SINGLE
 
-/* A corner of a piece: magnitudes and errors of what setup has of it. Window coordinates are
- * relative to the pixel's centre; dev and spread as in SingleVertex. */
-typedef struct PieceCorner {
-    const SingleVertex *vertex;
-    double x, y;         /* window, less the pixel's centre */
-    double dev_x, dev_y; /* of the stored window position from the exact point's */
-    double all_x, all_y; /* the same from (x, y) */
-    double z, dev_z, all_z;
-    double g, dev_g, all_g, g_most; /* 1/w */
-} PieceCorner;
-
+/* Window coordinates are relative to the pixel's centre. */
 typedef struct Piece {
-    PieceCorner corner[3];
+    SingleCorner corner[3];
     double area_least;  /* of the stored corners, doubled; 0: it may be none */
     double weight[3];   /* |barycentric weights| of the pixel, at most */
     double area_factor; /* relative error of the rounded area's inverse */
@@ -53,15 +43,14 @@ static double window(const SingleViewport *viewport, const SingleVertex *v, int 
     return value;
 }
 
-static bool set_corner(const SingleViewport *viewport, const SingleVertex *v,
-                       const SinglePixel *pixel, PieceCorner *out)
+static bool set_corner(const SingleViewport *viewport, const SingleVertex *v, SingleCorner *out)
 {
     double w = v->value[3], least = w - v->dev[3] - v->spread[3];
     if (!(least > BOUNDED_TINY))
         return false;
     out->vertex = v;
-    out->x = window(viewport, v, 0, least, &out->dev_x, &out->all_x) - (pixel->x + 0.5);
-    out->y = window(viewport, v, 1, least, &out->dev_y, &out->all_y) - (pixel->y + 0.5);
+    out->x = window(viewport, v, 0, least, &out->dev_x, &out->all_x);
+    out->y = window(viewport, v, 1, least, &out->dev_y, &out->all_y);
     out->z = window(viewport, v, 2, least, &out->dev_z, &out->all_z);
     out->g = 1.0 / w;
     out->dev_g = (v->dev[3] / least + 1.001 * U) / least + BOUNDED_TINY;
@@ -77,9 +66,9 @@ static bool set_corner(const SingleViewport *viewport, const SingleVertex *v,
 
 /* The edge function of the pixel's centre opposite corner i, and its error when each coordinate is
  * off by its own and by `moved`. */
-static double edge(const PieceCorner c[3], int i, double moved, double *error)
+static double edge(const SingleCorner c[3], int i, double moved, double *error)
 {
-    const PieceCorner *j = &c[(i + 1) % 3], *k = &c[(i + 2) % 3];
+    const SingleCorner *j = &c[(i + 1) % 3], *k = &c[(i + 2) % 3];
     *error = bounded_product_error(j->x, j->all_x + moved, k->y, k->all_y + moved) +
              bounded_product_error(k->x, k->all_x + moved, j->y, j->all_y + moved);
     *error += 4.0 * BOUNDED_DOUBLE * (fabs(j->x * k->y) + fabs(k->x * j->y));
@@ -87,7 +76,7 @@ static double edge(const PieceCorner c[3], int i, double moved, double *error)
 }
 
 /* The doubled area; its error as above. */
-static double area(const PieceCorner c[3], double moved, double *error)
+static double area(const SingleCorner c[3], double moved, double *error)
 {
     double x1 = c[1].x - c[0].x, y1 = c[1].y - c[0].y, x2 = c[2].x - c[0].x, y2 = c[2].y - c[0].y;
     double m2 = 2.0 * moved, tiny = 8.0 * BOUNDED_DOUBLE;
@@ -100,7 +89,7 @@ static double area(const PieceCorner c[3], double moved, double *error)
 }
 
 /* Whether the piece's snapped corners may cover the pixel. */
-static bool may_cover(const PieceCorner c[3])
+static bool may_cover(const SingleCorner c[3])
 {
     double area_error, whole = area(c, SNAP, &area_error);
     if (!(fabs(whole) > area_error))
@@ -122,7 +111,7 @@ static double apart(double a, double a_error, double b, double b_error)
 
 static void set_piece(Piece *piece)
 {
-    const PieceCorner *c = piece->corner;
+    const SingleCorner *c = piece->corner;
     double error, whole = area(c, 0.0, &error);
     piece->area_least = fabs(whole) - error > 0.0 ? fabs(whole) - error : 0.0;
     for (int i = 0; i < 3; i++) {
@@ -149,7 +138,7 @@ static void set_piece(Piece *piece)
 static double plane_rounding(const SingleViewport *viewport, const Piece *piece,
                              const SinglePixel *pixel, const PlaneInput *in)
 {
-    const PieceCorner *c = piece->corner;
+    const SingleCorner *c = piece->corner;
     double d01 = apart(in->value[0], in->all[0], in->value[1], in->all[1]);
     double d20 = apart(in->value[2], in->all[2], in->value[0], in->all[0]);
     double inverse = (1.0 + piece->area_factor) / piece->area_least;
@@ -226,7 +215,7 @@ static double inverse_w_rounding(const SingleViewport *viewport, const Piece *pi
     PlaneInput in = {
         .slope_x = pixel->inverse_w_x, .slope_y = pixel->inverse_w_y, .at = most(pixel->inverse_w)};
     for (int i = 0; i < 3; i++) {
-        const PieceCorner *c = &piece->corner[i];
+        const SingleCorner *c = &piece->corner[i];
         in.value[i] = c->g;
         in.all[i] = c->all_g;
         in.off_plane[i] = c->dev_g + in.slope_x * c->dev_x + in.slope_y * c->dev_y;
@@ -239,14 +228,15 @@ static double inverse_w_rounding(const SingleViewport *viewport, const Piece *pi
 
 /* Of component k, whose exact value at the pixel is r: M = attribute/w − r/w vanishes at the pixel,
  * so that only distances from its plane count. */
-static double varying_error(const SingleViewport *viewport, const SingleVertex triangle[3],
-                            const Piece *piece, const SinglePixel *pixel, int k, Bounded r)
+static double varying_error(const SingleTriangle *triangle, const Piece *piece,
+                            const SinglePixel *pixel, int k, Bounded r)
 {
     Bounded at[3];
-    for (int i = 0; i < 3; i++)
-        at[i] = exactly(triangle[i].value[k] - r.value,
-                        triangle[i].spread[k] +
-                            2.0 * BOUNDED_DOUBLE * (fabs(triangle[i].value[k]) + fabs(r.value)));
+    for (int i = 0; i < 3; i++) {
+        const SingleVertex *v = &triangle->vertex[i];
+        at[i] = exactly(v->value[k] - r.value,
+                        v->spread[k] + 2.0 * BOUNDED_DOUBLE * (fabs(v->value[k]) + fabs(r.value)));
+    }
     double m_x = most(slope(pixel, pixel->cofactor_x, at)) + r.exact * pixel->inverse_w_x;
     double m_y = most(slope(pixel, pixel->cofactor_y, at)) + r.exact * pixel->inverse_w_y;
     double size = most(r), least = piece->least_w, apart_from_m[3];
@@ -254,7 +244,7 @@ static double varying_error(const SingleViewport *viewport, const SingleVertex t
                      .slope_y = m_y + size * pixel->inverse_w_y,
                      .at = size * most(pixel->inverse_w)};
     for (int i = 0; i < 3; i++) {
-        const PieceCorner *c = &piece->corner[i];
+        const SingleCorner *c = &piece->corner[i];
         const SingleVertex *v = c->vertex;
         double a = fabs(v->value[k]), a_all = v->dev[k] + v->spread[k];
         double rounded = 1.001 * U * (a + a_all) * c->g_most + BOUNDED_TINY;
@@ -266,7 +256,8 @@ static double varying_error(const SingleViewport *viewport, const SingleVertex t
         in.off_plane[i] = v->dev[k] * c->g_most + (a + v->spread[k]) * c->dev_g + rounded +
                           in.slope_x * c->dev_x + in.slope_y * c->dev_y;
     }
-    double error = mixed(piece, apart_from_m) + plane_rounding(viewport, piece, pixel, &in) +
+    double error = mixed(piece, apart_from_m) +
+                   plane_rounding(&triangle->viewport, piece, pixel, &in) +
                    size * piece->rounding_w;
     if (!(least > BOUNDED_TINY))
         return (double)INFINITY;
@@ -275,13 +266,14 @@ static double varying_error(const SingleViewport *viewport, const SingleVertex t
     return bounded_limit((error + r.exact) * (1.0 + 0x1p-20));
 }
 
-static double depth_error(const SingleViewport *viewport, const SingleVertex triangle[3],
-                          const Piece *piece, const SinglePixel *pixel, Bounded depth)
+static double depth_error(const SingleTriangle *triangle, const Piece *piece,
+                          const SinglePixel *pixel, Bounded depth)
 {
+    const SingleViewport *viewport = &triangle->viewport;
     Bounded at[3];
     double scale = viewport->scale[2], translate = viewport->translate[2];
     for (int i = 0; i < 3; i++) {
-        const SingleVertex *v = &triangle[i];
+        const SingleVertex *v = &triangle->vertex[i];
         double value = scale * v->value[2] + (translate - depth.value) * v->value[3];
         double size = fabs(v->value[2]) + 2.0 * fabs(v->value[3]);
         at[i] = exactly(value, v->spread[2] + 2.0 * v->spread[3] + depth.exact * size +
@@ -291,7 +283,7 @@ static double depth_error(const SingleViewport *viewport, const SingleVertex tri
                      .slope_y = most(slope(pixel, pixel->cofactor_y, at)),
                      .at = most(depth)};
     for (int i = 0; i < 3; i++) {
-        const PieceCorner *c = &piece->corner[i];
+        const SingleCorner *c = &piece->corner[i];
         in.value[i] = c->z;
         in.all[i] = c->all_z;
         in.off_plane[i] = c->dev_z + in.slope_x * c->dev_x + in.slope_y * c->dev_y;
@@ -313,81 +305,79 @@ typedef struct Errors {
     bool facing_certain;
 } Errors;
 
-static void add_turned(const SingleViewport *viewport, const SingleVertex triangle[3],
-                       const SinglePixel *pixel, Piece *piece, int used, const Bounded *attribute,
-                       const Bounded *depth, Errors *errors)
+static void add_turned(const SingleTriangle *triangle, const SinglePixel *pixel, Piece *piece,
+                       int used, const Bounded *attribute, const Bounded *depth, Errors *errors)
 {
     set_piece(piece);
     if (!(piece->area_least > 0.0)) {
         errors->unknown = true;
         return;
     }
-    piece->rounding_w = inverse_w_rounding(viewport, piece, pixel, &piece->least_w);
+    piece->rounding_w = inverse_w_rounding(&triangle->viewport, piece, pixel, &piece->least_w);
     for (int k = SINGLE_POSITION; k < used; k++)
-        raise(&errors->component[k],
-              varying_error(viewport, triangle, piece, pixel, k, attribute[k]));
+        raise(&errors->component[k], varying_error(triangle, piece, pixel, k, attribute[k]));
     if (depth)
-        raise(&errors->depth, depth_error(viewport, triangle, piece, pixel, *depth));
+        raise(&errors->depth, depth_error(triangle, piece, pixel, *depth));
 }
 
 static void swap_corners(Piece *piece)
 {
-    PieceCorner first = piece->corner[0];
+    SingleCorner first = piece->corner[0];
     piece->corner[0] = piece->corner[1];
     piece->corner[1] = first;
 }
 
 /* The pipeline exchanges the first two corners of a counter-clockwise piece. Where snapping may
  * decide which way it is turned, both count. */
-static void add_piece(const SingleViewport *viewport, const SingleVertex triangle[3],
-                      const SinglePixel *pixel, Piece *piece, int used, const Bounded *attribute,
-                      const Bounded *depth, Errors *errors)
+static void add_piece(const SingleTriangle *triangle, const SinglePixel *pixel, Piece *piece,
+                      int used, const Bounded *attribute, const Bounded *depth, Errors *errors)
 {
     double error, whole = area(piece->corner, SNAP, &error);
     bool certain = fabs(whole) > error;
     errors->facing_certain &= certain;
     if (!certain || whole < 0.0)
-        add_turned(viewport, triangle, pixel, piece, used, attribute, depth, errors);
+        add_turned(triangle, pixel, piece, used, attribute, depth, errors);
     if (!certain || whole > 0.0) {
         swap_corners(piece);
-        add_turned(viewport, triangle, pixel, piece, used, attribute, depth, errors);
+        add_turned(triangle, pixel, piece, used, attribute, depth, errors);
     }
 }
 
-/* False: nothing is known of a corner. */
-static bool set_corners(const SingleViewport *viewport, const SinglePixel *pixel,
-                        const SinglePolygon *polygon, PieceCorner corners[SINGLE_CORNERS_MAX])
+/* A polygon's corners around the pixel's centre. */
+static void set_corners(const SingleFan *fan, const SinglePixel *pixel,
+                        SingleCorner corners[SINGLE_CORNERS_MAX])
 {
-    for (int i = 0; i < polygon->count; i++)
-        if (!set_corner(viewport, &polygon->corner[i], pixel, &corners[i]))
-            return false;
-    return true;
+    for (int i = 0; i < fan->polygon.count; i++) {
+        corners[i] = fan->corner[i];
+        corners[i].x -= pixel->x + 0.5;
+        corners[i].y -= pixel->y + 0.5;
+    }
 }
 
 /* Number i, from 2, of a polygon's fan. */
-static Piece fan_piece(const SinglePolygon *polygon, const PieceCorner *corners, int i)
+static Piece fan_piece(const SinglePolygon *polygon, const SingleCorner *corners, int i)
 {
     if (polygon->whole)
         return (Piece){.corner = {corners[0], corners[1], corners[2]}};
     return (Piece){.corner = {corners[i - 1], corners[i], corners[0]}};
 }
 
-/* Adds what may cover the pixel of one polygon's fan. */
-static void add_polygon(const SingleViewport *viewport, const SingleVertex triangle[3],
-                        const SinglePixel *pixel, const SinglePolygon *polygon, int used,
-                        const Bounded *attribute, const Bounded *depth, Errors *errors)
+/* Adds what may cover the pixel of one polygon. */
+static void add_fan(const SingleTriangle *triangle, const SinglePixel *pixel, const SingleFan *fan,
+                    int used, const Bounded *attribute, const Bounded *depth, Errors *errors)
 {
-    PieceCorner corners[SINGLE_CORNERS_MAX];
-    if (!set_corners(viewport, pixel, polygon, corners)) {
+    SingleCorner corners[SINGLE_CORNERS_MAX];
+    if (!fan->known) {
         errors->unknown = true;
         return;
     }
-    for (int i = 2; i < polygon->count; i++) {
-        Piece piece = fan_piece(polygon, corners, i);
-        if (polygon->count > 3 && !may_cover(piece.corner))
+    set_corners(fan, pixel, corners);
+    for (int i = 2; i < fan->polygon.count; i++) {
+        Piece piece = fan_piece(&fan->polygon, corners, i);
+        if (fan->polygon.count > 3 && !may_cover(piece.corner))
             continue;
         errors->any = true;
-        add_piece(viewport, triangle, pixel, &piece, used, attribute, depth, errors);
+        add_piece(triangle, pixel, &piece, used, attribute, depth, errors);
     }
 }
 
@@ -402,39 +392,78 @@ static bool next_choices(int decisions, unsigned *choices)
     return decisions > 0;
 }
 
-void single_errors(const SingleViewport *viewport, const SingleVertex triangle[3],
-                   const SinglePixel *pixel, int used, Bounded attribute[SINGLE_COMPONENTS],
-                   Bounded *depth, bool *facing_certain)
+static void make_fan(const SingleTriangle *triangle, unsigned choices, SingleFan *out)
 {
-    Errors errors = {.facing_certain = true};
+    const SingleViewport *viewport = &triangle->viewport;
+    SinglePolygon *polygon = &out->polygon;
+    out->decisions = single_clip(viewport, triangle->vertex, choices, polygon);
+    out->known = out->decisions <= SINGLE_DECISIONS_MAX;
+    for (int i = 0; i < polygon->count && out->known; i++)
+        out->known = set_corner(viewport, &polygon->corner[i], &out->corner[i]);
+}
+
+void single_clipped(SingleTriangle *triangle)
+{
     unsigned choices = 0;
     int decisions;
+    triangle->kept = 0;
     do {
-        SinglePolygon polygon;
-        decisions = single_clip(viewport, triangle, choices, &polygon);
-        if (decisions > SINGLE_DECISIONS_MAX) {
-            errors.unknown = true;
-            break;
-        }
-        add_polygon(viewport, triangle, pixel, &polygon, used, attribute, depth, &errors);
-    } while (next_choices(decisions, &choices));
+        SingleFan *fan = &triangle->fan[triangle->kept++];
+        make_fan(triangle, choices, fan);
+        decisions = fan->decisions;
+    } while (triangle->kept < SINGLE_KEPT && decisions <= SINGLE_DECISIONS_MAX &&
+             next_choices(decisions, &choices));
+}
+
+/* All polygons that clipping may leave, one after the other. */
+typedef struct FanWalk {
+    unsigned choices;
+    int count, decisions;
+    SingleFan made; /* one that is not kept */
+} FanWalk;
+
+/* NULL: that were all. After one with too many decisions there is none. */
+static const SingleFan *next_fan(const SingleTriangle *triangle, FanWalk *walk)
+{
+    if (walk->count > 0 &&
+        (walk->decisions > SINGLE_DECISIONS_MAX || !next_choices(walk->decisions, &walk->choices)))
+        return NULL;
+    const SingleFan *fan = &walk->made;
+    if (walk->count < triangle->kept)
+        fan = &triangle->fan[walk->count];
+    else
+        make_fan(triangle, walk->choices, &walk->made);
+    walk->count++;
+    walk->decisions = fan->decisions;
+    return fan;
+}
+
+void single_errors(const SingleTriangle *triangle, const SinglePixel *pixel, int used,
+                   Bounded attribute[SINGLE_COMPONENTS], Bounded *depth, bool *facing_certain)
+{
+    Errors errors = {.facing_certain = true};
+    FanWalk walk;
+    walk.count = 0;
+    walk.choices = 0;
+    for (const SingleFan *fan; !errors.unknown && (fan = next_fan(triangle, &walk));)
+        add_fan(triangle, pixel, fan, used, attribute, depth, &errors);
     bool known = errors.any && !errors.unknown;
     for (int k = SINGLE_POSITION; k < used; k++)
         attribute[k].single = known ? errors.component[k] : (double)INFINITY;
     if (depth)
         depth->single = known ? errors.depth : (double)INFINITY;
-    *facing_certain = errors.facing_certain;
+    *facing_certain = errors.facing_certain && !errors.unknown;
 }
 
 /* ---- coverage -------------------------------------------------------------------------------- */
 
 /* Whether the centre lies within the convex polygon however its corners are snapped, and so in a
  * piece of its fan, whose inner edges two pieces share. */
-static bool must_cover(const PieceCorner *corners, int count)
+static bool must_cover(const SingleCorner *corners, int count)
 {
     int side = 0;
     for (int i = 0; i < count; i++) {
-        const PieceCorner ends[3] = {corners[i], corners[i], corners[(i + 1) % count]};
+        const SingleCorner ends[3] = {corners[i], corners[i], corners[(i + 1) % count]};
         double error, value = edge(ends, 0, SNAP, &error);
         int here = value > error ? 1 : value < -error ? -1 : 0;
         if (here == 0 || (i > 0 && here != side))
@@ -444,31 +473,22 @@ static bool must_cover(const PieceCorner *corners, int count)
     return count >= 3;
 }
 
-static void cover_polygon(const SingleViewport *viewport, const SinglePixel *pixel,
-                          const SinglePolygon *polygon, SingleCover *cover)
-{
-    PieceCorner corners[SINGLE_CORNERS_MAX];
-    if (!set_corners(viewport, pixel, polygon, corners)) {
-        *cover = (SingleCover){.possible = true};
-        return;
-    }
-    for (int i = 2; i < polygon->count && !cover->possible; i++)
-        cover->possible = may_cover(fan_piece(polygon, corners, i).corner);
-    cover->certain = cover->certain && must_cover(corners, polygon->count);
-}
-
-SingleCover single_cover(const SingleViewport *viewport, const SingleVertex triangle[3],
-                         const SinglePixel *pixel)
+SingleCover single_cover(const SingleTriangle *triangle, const SinglePixel *pixel)
 {
     SingleCover cover = {.possible = false, .certain = true};
-    unsigned choices = 0;
-    int decisions;
-    do {
-        SinglePolygon polygon;
-        decisions = single_clip(viewport, triangle, choices, &polygon);
-        if (decisions > SINGLE_DECISIONS_MAX)
+    FanWalk walk;
+    walk.count = 0;
+    walk.choices = 0;
+    const SingleFan *fan;
+    while ((!cover.possible || cover.certain) && (fan = next_fan(triangle, &walk))) {
+        SingleCorner corners[SINGLE_CORNERS_MAX];
+        const SinglePolygon *polygon = &fan->polygon;
+        if (!fan->known)
             return (SingleCover){.possible = true};
-        cover_polygon(viewport, pixel, &polygon, &cover);
-    } while (next_choices(decisions, &choices));
+        set_corners(fan, pixel, corners);
+        for (int i = 2; i < polygon->count && !cover.possible; i++)
+            cover.possible = may_cover(fan_piece(polygon, corners, i).corner);
+        cover.certain = cover.certain && must_cover(corners, polygon->count);
+    }
     return cover;
 }

@@ -20,6 +20,7 @@
  * worker took which tile. */
 typedef struct WorkerState {
     TileFragments fragments;
+    BoundTriangles *triangles;             /* of desc->bound */
     uint32_t layer[FRAGMENTS_TILE_PIXELS]; /* one traced rectangle */
     uint32_t max;
     uint64_t fragment_count, coverage_differs, ties;
@@ -79,14 +80,15 @@ static uint32_t composite(const Render *render, const TileFragments *tile, int p
 
 /* What the pipeline may differ by from the truth's rgba, the truth's own rounding to float
  * included. */
-static void bound_pixel(const Render *render, const TileFragments *tile, int pixel, int x, int y,
+static void bound_pixel(const Render *render, WorkerState *worker, int pixel, int x, int y,
                         const double rgba[4], float out[4], float rounding[4])
 {
+    const TileFragments *tile = &worker->fragments;
     Bounded bound[4] = {bounded_of(0.0), bounded_of(0.0), bounded_of(0.0), bounded_of(1.0)};
     for (uint32_t i = tile->first[pixel]; i < tile->first[pixel + 1]; i++)
-        bound_blend(&render->soup, render->desc, &tile->sorted[i], x, y, bound);
+        bound_blend(worker->triangles, render->desc, &tile->sorted[i], x, y, bound);
     if (tile->opaque[pixel].triangle != FRAGMENT_NO_TRIANGLE)
-        bound_blend(&render->soup, render->desc, &tile->opaque[pixel], x, y, bound);
+        bound_blend(worker->triangles, render->desc, &tile->opaque[pixel], x, y, bound);
     bound_resolve(render->view, render->desc->accum, bound);
     for (int i = 0; i < 4; i++) {
         /* Both are within `exact` of what exact arithmetic gives. Were they farther apart, one of
@@ -115,8 +117,9 @@ static Result reserve_samples(Render *render, const TileFragments *tile, DeepSam
     return result;
 }
 
-static Result draw_tile(Render *render, const TileFragments *tile)
+static Result draw_tile(Render *render, WorkerState *worker)
 {
+    const TileFragments *tile = &worker->fragments;
     DeepSample *samples;
     Result result = reserve_samples(render, tile, &samples);
     if (result != RESULT_OK)
@@ -132,7 +135,7 @@ static Result draw_tile(Render *render, const TileFragments *tile)
                 samples += count;
             }
             if (render->desc->bound)
-                bound_pixel(render, tile, row * TRACE_TILE + column, x,
+                bound_pixel(render, worker, row * TRACE_TILE + column, x,
                             render->view->height - 1 - image_y, rgba,
                             image_pixel(&render->frame->bound, x, image_y),
                             image_pixel(&render->frame->rounding, x, image_y));
@@ -204,7 +207,7 @@ static Result tile_task(void *context, uint32_t index, int worker_index)
     TileFragments *tile = &worker->fragments;
     Result result = fragments_collect(&render->soup, render->desc, index, tile);
     if (result == RESULT_OK)
-        result = draw_tile(render, tile);
+        result = draw_tile(render, worker);
     if (result != RESULT_OK)
         return result;
     worker->max = tile->deepest > worker->max ? tile->deepest : worker->max;
@@ -250,11 +253,26 @@ static Result begin_deep(Render *render, size_t *left)
     return RESULT_OK;
 }
 
+/* With at most limit bytes for fragments; the caller frees what it is given, also after a failure.
+ */
+static Result create_worker(const Render *render, size_t limit, WorkerState **out)
+{
+    WorkerState *worker = *out = memory_array(1, sizeof *worker);
+    if (!worker)
+        return RESULT_NO_MEMORY;
+    worker->fragments.limit_bytes = limit;
+    if (!render->desc->bound)
+        return RESULT_OK;
+    worker->triangles = bound_triangles_create(&render->soup, !render->desc->unfused);
+    return worker->triangles ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
 /* Runs the tiles with one scratch per worker, within what is left of limit bytes. */
 static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_t limit)
 {
     size_t threads = (size_t)pool_threads(pool);
-    size_t fixed = fixed_bytes + render->soup.bytes + threads * sizeof(WorkerState);
+    size_t worker_bytes = sizeof(WorkerState) + (render->desc->bound ? bound_triangles_bytes() : 0);
+    size_t fixed = fixed_bytes + render->soup.bytes + threads * worker_bytes;
     Result result = soup_check_memory(fixed, limit);
     size_t left = limit - fixed;
     if (result == RESULT_OK && render->deep)
@@ -264,13 +282,8 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
     render->workers = memory_array(threads, sizeof *render->workers);
     if (!render->workers)
         return RESULT_NO_MEMORY;
-    for (size_t i = 0; i < threads && result == RESULT_OK; i++) {
-        render->workers[i] = memory_array(1, sizeof **render->workers);
-        if (render->workers[i])
-            render->workers[i]->fragments.limit_bytes = left / threads;
-        else
-            result = RESULT_NO_MEMORY;
-    }
+    for (size_t i = 0; i < threads && result == RESULT_OK; i++)
+        result = create_worker(render, left / threads, &render->workers[i]);
     uint32_t tiles = (uint32_t)(render->soup.tile_columns * render->soup.tile_rows);
     if (result == RESULT_OK)
         result = pool_run(pool, tiles, tile_task, render);
@@ -282,6 +295,7 @@ static Result render_tiles(Render *render, Pool *pool, size_t fixed_bytes, size_
         add_counts(worker, &frame->layers);
         frame->buffer_bytes += fragments_bytes(&worker->fragments) - sizeof worker->fragments;
         fragments_free(&worker->fragments);
+        bound_triangles_destroy(worker->triangles);
         free(worker);
     }
     free(render->workers);

@@ -10,6 +10,7 @@ struct Possible {
     const RenderDesc *desc;
     View view;
     Soup soup;
+    BoundTriangles *triangles;
 };
 
 Result possible_create(const Scene *scene, const RenderDesc *desc, Possible **out)
@@ -24,12 +25,15 @@ Result possible_create(const Scene *scene, const RenderDesc *desc, Possible **ou
     if (result == RESULT_OK)
         result = soup_build(scene, &possible->view, pool, limit, &possible->soup);
     pool_destroy(pool);
-    return result;
+    if (result == RESULT_OK)
+        possible->triangles = bound_triangles_create(&possible->soup, !desc->unfused);
+    return result == RESULT_OK && !possible->triangles ? RESULT_NO_MEMORY : result;
 }
 
 void possible_destroy(Possible *possible)
 {
     if (possible) {
+        bound_triangles_destroy(possible->triangles);
         soup_free(&possible->soup);
         view_free(&possible->view);
     }
@@ -45,7 +49,7 @@ static Place place(const Possible *possible, const RenderDesc *desc, size_t pixe
 {
     BoundFragment found;
     size_t width = (size_t)possible->view.width;
-    bound_fragment(&possible->soup, desc ? desc : possible->desc,
+    bound_fragment(possible->triangles, desc ? desc : possible->desc,
                    soup_triangle_of(&possible->soup, id), (int)(pixel % width),
                    possible->view.height - 1 - (int)(pixel / width), &found);
     const double *depth = desc ? found.stored : found.exact;

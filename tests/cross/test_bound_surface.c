@@ -43,6 +43,7 @@ typedef struct Case {
     RenderDesc desc;
     View view;
     Soup soup;
+    BoundTriangles *triangles;
     TileFragments *tile;
     TraceStore *trace;
     Tally (*tallies)[PARTS]; /* by kind of soup */
@@ -107,7 +108,7 @@ static void check_depth(const Case *of, const Fragment *fragment, int x, int row
                         const Image *depth)
 {
     BoundFragment bound;
-    bound_fragment(&of->soup, &of->desc, fragment->triangle, x, SIZE - 1 - row, &bound);
+    bound_fragment(of->triangles, &of->desc, fragment->triangle, x, SIZE - 1 - row, &bound);
     double z = (double)depth_fetch(depth->format, *(const uint32_t *)image_pixel(depth, x, row));
     ck_assert_msg(bound.possible && z >= bound.stored[0] && z <= bound.stored[1],
                   "PEEL_TEST_SEED=%llu: %d, %d: depth %.9g, expected %.17g to %.17g%s",
@@ -115,17 +116,38 @@ static void check_depth(const Case *of, const Fragment *fragment, int x, int row
                   bound.possible ? "" : " and nothing");
 }
 
+/* Triangles that were kept bound as those looked at anew. */
+static void check_kept(const Case *of, const Fragment *fragment, int x, int row)
+{
+    BoundTriangles *anew = bound_triangles_create(&of->soup, !of->desc.unfused);
+    BoundTriangles *const both[2] = {of->triangles, anew};
+    BoundedSurface surfaces[2];
+    BoundFragment bounds[2];
+    ck_assert_ptr_nonnull(anew);
+    memset(surfaces, 0, sizeof surfaces);
+    memset(bounds, 0, sizeof bounds);
+    for (int i = 0; i < 2; i++) {
+        bound_surface(both[i], &of->desc, fragment, x, SIZE - 1 - row, &surfaces[i]);
+        bound_fragment(both[i], &of->desc, fragment->triangle, x, SIZE - 1 - row, &bounds[i]);
+    }
+    ck_assert_mem_eq(&surfaces[0], &surfaces[1], sizeof surfaces[0]);
+    ck_assert_mem_eq(&bounds[0], &bounds[1], sizeof bounds[0]);
+    bound_triangles_destroy(anew);
+}
+
 static void check_fragment(const Case *of, const Fragment *fragment, int x, int row,
                            const Image images[PARTS], const Image *depth)
 {
     BoundedSurface surface;
     Tally *tallies = of->tallies[of->seed % SOUP_KINDS];
-    bound_surface(&of->soup, &of->desc, fragment, x, SIZE - 1 - row, &surface);
+    bound_surface(of->triangles, &of->desc, fragment, x, SIZE - 1 - row, &surface);
     const Bounded material[3] = {surface.roughness, surface.metallic, surface.occlusion};
     const Bounded *bounds[PARTS] = {surface.position, surface.normal, surface.diffuse, material};
     float values[PARTS][4];
     fetch(of, images, depth, x, row, values);
     check_depth(of, fragment, x, row, depth);
+    if ((row * SIZE + x) % 61 == 0)
+        check_kept(of, fragment, x, row);
     for (int part = 0; part < PARTS; part++)
         for (int i = 0; i < 3 + (part == DIFFUSE); i++)
             check_value(of, (Part)part, x, row, values[part][i], bounds[part][i], &tallies[part]);
@@ -180,11 +202,14 @@ static void run_case(uint64_t seed, Tally tallies[SOUP_KINDS][PARTS])
     ok(view_build(&random_soup.scene, &of.desc, &of.view));
     Pool *pool = pool_create(1);
     ok(soup_build(&random_soup.scene, &of.view, pool, (size_t)1 << 30, &of.soup));
+    of.triangles = bound_triangles_create(&of.soup, !of.desc.unfused);
+    ck_assert_ptr_nonnull(of.triangles);
     tile = (TileFragments){.limit_bytes = (size_t)1 << 30};
     ok(fragments_collect(&of.soup, &of.desc, 0, &tile));
     for (int peel = -1; peel < frame.peels && peel < PEELS; peel++)
         check_layer(&of, peel);
     fragments_free(&tile);
+    bound_triangles_destroy(of.triangles);
     soup_free(&of.soup);
     pool_destroy(pool);
     view_free(&of.view);

@@ -5,6 +5,8 @@
 #   fuzz.sh TARGET merge FOLDER             the fewest of FOLDER's inputs that reach all that they
 #                                           reach, the smaller first, to tests/fuzz/corpus/TARGET
 #
+# The target gl has raster's inputs.
+#
 # FOLDER (default build-fuzz/found/TARGET) keeps inputs that reach something new, and is where the
 # next run starts, with tests/fuzz/corpus/TARGET and tests/fuzz/found/TARGET. What ends the program
 # goes to FOLDER.found: exit code 1. Progress: a line from each round.
@@ -44,14 +46,20 @@ cp "$source/build-fuzz/tests/fuzz/fuzzer_$target" "$fuzzer" || exit 4
 # Bytes of an input, and of all that are kept in the source tree.
 longest=16384
 kept=100000
-if [ "$target" = raster ]; then
-    longest=1300 # what it looks at
+corpus=$target
+leaks=1
+case $target in
+raster | gl)
+    longest=1300 # what they look at
     kept=20000   # each takes its time
-fi
+    corpus=raster
+    ;;
+esac
+[ "$target" != gl ] || leaks=0 # Mesa's own
 
 # The folders that there are, of those that inputs come from.
 starts() {
-    for start in "$inputs/corpus/$target" "$inputs/found/$target"; do
+    for start in "$inputs/corpus/$corpus" "$inputs/found/$corpus"; do
         [ ! -d "$start" ] || echo "$start"
     done
 }
@@ -59,16 +67,16 @@ starts() {
 if [ "$what" = merge ]; then
     # shellcheck disable=SC2046 # a list of words
     "$fuzzer" -set_cover_merge=1 -timeout=25 -rss_limit_mb=3000 "$scratch/merged" "$folder" \
-        "$inputs/corpus/$target" >"$log" 2>&1 || fail "the merge failed: $log"
-    rm -f "$inputs/corpus/$target"/*
+        "$inputs/corpus/$corpus" >"$log" 2>&1 || fail "the merge failed: $log"
+    rm -f "$inputs/corpus/$corpus"/*
     total=0
     for file in $(cd "$scratch/merged" && ls -Sr); do
         bytes=$(wc -c <"$scratch/merged/$file")
         [ $((total + bytes)) -le $kept ] || break
         total=$((total + bytes))
-        cp "$scratch/merged/$file" "$inputs/corpus/$target/$file"
+        cp "$scratch/merged/$file" "$inputs/corpus/$corpus/$file"
     done
-    echo "$target: $(find "$inputs/corpus/$target" -type f | wc -l) inputs, $total bytes"
+    echo "$target: $(find "$inputs/corpus/$corpus" -type f | wc -l) inputs, $total bytes"
     exit 0
 fi
 
@@ -96,7 +104,7 @@ while [ "$used" -lt "$what" ]; do
     [ $left -lt 300 ] || left=300
     # shellcheck disable=SC2046,SC2086 # lists of words
     (cd "$scratch/run" && exec nice -n 19 "$fuzzer" -fork=1 -ignore_crashes=1 -ignore_ooms=1 \
-        -ignore_timeouts=1 -max_total_time="$left" -timeout=25 -report_slow_units=25 \
+        -ignore_timeouts=1 -detect_leaks=$leaks -max_total_time="$left" -timeout=25 -report_slow_units=25 \
         -rss_limit_mb=3000 -max_len="$longest" -artifact_prefix="$found/" $dictionary \
         "$folder" $(starts)) >"$scratch/log" 2>&1
     cat "$scratch/log" >>"$log"

@@ -198,8 +198,9 @@ typedef struct Totals {
     double ratio, worst; /* sum and greatest of error over bound */
 } Totals;
 
-static void check_pixel(const Soup *soup, const RenderDesc *desc, const TileFragments *tile, int x,
-                        int row, const Frame *frame, Totals *totals)
+static void check_pixel(const Soup *soup, BoundTriangles *triangles, const RenderDesc *desc,
+                        const TileFragments *tile, int x, int row, const Frame *frame,
+                        Totals *totals)
 {
     int pixel = row * TRACE_TILE + x, y = soup->view->height - 1 - row;
     Bounded bound[4] = {bounded_of(0.0), bounded_of(0.0), bounded_of(0.0), bounded_of(1.0)};
@@ -210,7 +211,7 @@ static void check_pixel(const Soup *soup, const RenderDesc *desc, const TileFrag
         const Fragment *fragment = i < tile->first[pixel + 1] ? &tile->sorted[i] : opaque;
         if (fragment->triangle == FRAGMENT_NO_TRIANGLE)
             break;
-        bound_blend(soup, desc, fragment, x, y, bound);
+        bound_blend(triangles, desc, fragment, x, y, bound);
         blend(soup, desc, fragment, x, y, exact);
     }
     bound_resolve(soup->view, desc->accum, bound);
@@ -255,9 +256,13 @@ static void check_scene(const Scene *scene, RenderDesc desc, Random *random, int
     ck_assert(soup_build(scene, &view, pool, (size_t)1 << 30, &soup) == RESULT_OK);
     tile = (TileFragments){.limit_bytes = (size_t)1 << 30};
     ck_assert(fragments_collect(&soup, &desc, 0, &tile) == RESULT_OK);
+    BoundTriangles *triangles = bound_triangles_create(&soup, !desc.unfused);
+    ck_assert_ptr_nonnull(triangles);
     for (int i = 0; i < pixels; i++)
-        check_pixel(&soup, &desc, &tile, (int)(random_bits(random) % (uint64_t)desc.width),
+        check_pixel(&soup, triangles, &desc, &tile,
+                    (int)(random_bits(random) % (uint64_t)desc.width),
                     (int)(random_bits(random) % (uint64_t)desc.height), &frame, totals);
+    bound_triangles_destroy(triangles);
     fragments_free(&tile);
     soup_free(&soup);
     pool_destroy(pool);
