@@ -2,8 +2,9 @@
  *
  * It blends arrays of pixels in several arithmetics (exactly rounded, as a GL driver does, or as
  * you name it), renders scenes given as arrays by the reference pipeline and by the ground truth,
- * and compares images value by value. It opens no file, prints nothing, never exits, and needs GMP
- * and the C library alone. C99 or C++, this one header:
+ * and compares images value by value. It opens no file, prints nothing, never exits (but GMP aborts
+ * when PEEL_TRUTH finds no memory for its numbers), and needs GMP and the C library alone. C99 or
+ * C++, this one header:
  *
  *     cc program.c $(pkg-config --cflags --libs peel)
  *     find_package(peel CONFIG REQUIRED)  target_link_libraries(program peel::peel)

@@ -224,6 +224,8 @@ static Result place(Build *build)
     }
     if (geometry->vertex_count > UINT32_MAX)
         return result_fail(RESULT_UNSUPPORTED, "more than 2^32 − 1 vertices after clipping");
+    if (geometry->opaque.count > INT32_MAX || geometry->transparent.count > INT32_MAX)
+        return result_fail(RESULT_UNSUPPORTED, "more than 2^31 − 1 triangles after clipping");
     geometry->opaque.items = memory_array(geometry->opaque.count, sizeof(Primitive));
     geometry->transparent.items = memory_array(geometry->transparent.count, sizeof(Primitive));
     Vertex *vertices = geometry->vertices;
@@ -240,12 +242,14 @@ static Result place(Build *build)
 static void add_chunks(uint32_t draw, uint32_t count, size_t first_vertex, Chunk *chunks,
                        size_t *chunk_count)
 {
-    for (uint32_t first = 0; first < count; first += CHUNK) {
+    uint32_t taken;
+    for (uint32_t first = 0; first < count; first += taken) {
+        taken = count - first < CHUNK ? count - first : CHUNK;
         if (chunks)
             chunks[*chunk_count] = (Chunk){
                 .draw = draw,
                 .first = first,
-                .count = count - first < CHUNK ? count - first : CHUNK,
+                .count = taken,
                 .first_vertex = first_vertex,
             };
         ++*chunk_count;

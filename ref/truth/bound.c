@@ -240,6 +240,15 @@ void bound_fragment(BoundTriangles *triangles, const RenderDesc *desc, uint32_t 
     set_range(stored.value, stored.single, out->stored);
 }
 
+bool bound_may_repeat(BoundTriangles *triangles, uint32_t triangle, int x, int y)
+{
+    const Triangle *exact = find_triangle(triangles, triangle);
+    Bounded weight[3];
+    SinglePixel pixel;
+    set_pixel(exact, x, y, weight, &pixel);
+    return single_may_overlap(&exact->single, &pixel);
+}
+
 /* ---- the surface ----------------------------------------------------------------------------- */
 
 static void store_surface(const View *view, const RenderDesc *desc, Bounded depth, int x, int y,

@@ -41,6 +41,9 @@ typedef struct BoundFragment {
 void bound_fragment(BoundTriangles *triangles, const RenderDesc *desc, uint32_t triangle, int x,
                     int y, BoundFragment *out);
 
+/* Whether the pipeline may have two fragments of a triangle at a pixel, y up. */
+bool bound_may_repeat(BoundTriangles *triangles, uint32_t triangle, int x, int y);
+
 /* Puts a fragment behind rgba, colour so far and transmittance: (0, 0, 0, 1) to begin with. */
 void bound_blend(BoundTriangles *triangles, const RenderDesc *desc, const Fragment *fragment, int x,
                  int y, Bounded rgba[4]);

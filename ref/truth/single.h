@@ -111,6 +111,10 @@ typedef struct SingleCover {
 
 SingleCover single_cover(const SingleTriangle *triangle, const SinglePixel *pixel);
 
+/* Whether two of the pipeline's pieces of the triangle may cover the pixel's centre: rounding may
+ * fold what clipping leaves. */
+bool single_may_overlap(const SingleTriangle *triangle, const SinglePixel *pixel);
+
 /* attribute: value and exact at the pixel, SINGLE_POSITION … used − 1; fills their single with the
  * greatest over all pieces that may cover the pixel, ∞ where there is none. depth: the same of the
  * window depth, or NULL. *facing_certain: no piece is so thin that its facing depends on rounding.

@@ -99,7 +99,10 @@ static void cut_edge(const SingleVertex *previous, Distance dp, const SingleVert
     const SingleVertex *from = from_current ? current : previous;
     const SingleVertex *to = from_current ? previous : current;
     Distance near = from_current ? d : dp;
-    double whole = fabs(d.value - dp.value), most = 0.5 + 0x1p-20;
+    double whole = fabs(d.value - dp.value);
+    /* Where rounding may take the other end for the nearer one, the place may be any. */
+    bool sure = fabs(fabs(d.value) - fabs(dp.value)) > d.error + dp.error;
+    double most = sure ? 0.5 + 0x1p-20 : 1.0;
     double t = whole > 0.0 ? fabs(near.value) / whole : 0.0;
     t = t < 0.5 ? t : 0.5;
     double t_error =

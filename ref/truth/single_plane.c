@@ -492,3 +492,22 @@ SingleCover single_cover(const SingleTriangle *triangle, const SinglePixel *pixe
     }
     return cover;
 }
+
+bool single_may_overlap(const SingleTriangle *triangle, const SinglePixel *pixel)
+{
+    FanWalk walk;
+    walk.count = 0;
+    walk.choices = 0;
+    for (const SingleFan *fan; (fan = next_fan(triangle, &walk));) {
+        SingleCorner corners[SINGLE_CORNERS_MAX];
+        int covering = 0;
+        if (!fan->known)
+            return true;
+        set_corners(fan, pixel, corners);
+        for (int i = 2; i < fan->polygon.count; i++)
+            covering += may_cover(fan_piece(&fan->polygon, corners, i).corner);
+        if (covering > 1)
+            return true;
+    }
+    return false;
+}

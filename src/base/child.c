@@ -121,7 +121,7 @@ Result child_limit(int pipe, const ChildLimits *limits)
  * for what ends a child at its limit or without its parent. No core file is left. */
 static void reset_signals(void)
 {
-    static const int numbers[] = {SIGXCPU, SIGPIPE, SIGINT, SIGTERM, SIGHUP};
+    static const int numbers[] = {SIGXCPU, SIGPIPE, SIGABRT, SIGINT, SIGTERM, SIGHUP};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         struct sigaction now;
         if (i < 2 || (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN))
@@ -245,10 +245,20 @@ static bool listen_to(Child *child, Result *result)
     return false;
 }
 
+/* Or nobody is told how a child ended, and its number may be another's: a program may have begun
+ * so. */
+static void heed_children(void)
+{
+    struct sigaction now;
+    if (sigaction(SIGCHLD, NULL, &now) == 0 && now.sa_handler == SIG_IGN)
+        signal(SIGCHLD, SIG_DFL);
+}
+
 static Result start(const ChildWork *work, Child *child)
 {
     int ends[2];
     pid_t parent = getpid();
+    heed_children();
     *child = (Child){.work = work, .limits = work->limits, .start = clock_now()};
     fflush(stdout); /* or the child would print it again */
     if (pipe(ends) != 0)

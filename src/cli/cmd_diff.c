@@ -328,7 +328,7 @@ static Result diff(DiffCommand *command, DiffReport *report)
     Result result = options_check_output(command->output);
     if (result == RESULT_OK)
         result = options_check_output(command->json);
-    command->files.max_bytes =
+    command->files.diff.max_bytes =
         command->render.desc.max_memory ? command->render.desc.max_memory : RENDER_MEMORY_DEFAULT;
     if (result == RESULT_OK && !command->quiet)
         printf("Comparing \"%s\" and \"%s\"\n", command->paths[0], command->paths[1]);

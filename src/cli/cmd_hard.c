@@ -155,7 +155,7 @@ static Result run_cases(const HardCommand *command, HardReport *reports, HardTot
 {
     Result result = options_check_output(command->json);
     if (result == RESULT_OK && command->report)
-        result = file_make_directories(command->report);
+        result = options_open_directory(command->report);
     for (size_t i = 0; i < command->count && result == RESULT_OK; i++) {
         result = hard_run(command->cases[i], command->slice, bind_renderers, &reports[i]);
         if (result != RESULT_OK)

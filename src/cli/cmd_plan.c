@@ -90,10 +90,8 @@ static bool is_replaced(const char *word, bool *value)
 {
     static const char *const names[] = {"json",   "max-error", "metric", "method",
                                         "passes", "accum",     "gbuffer"};
-    size_t length = strncmp(word, "--", 2) == 0 ? strcspn(word + 2, "=") : 0;
-    *value = length > 0 && word[2 + length] == '\0';
-    for (size_t i = 0; i < sizeof names / sizeof *names && length > 0; i++)
-        if (strncmp(word + 2, names[i], length) == 0)
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (options_is_long(word, names[i], value))
             return true;
     return false;
 }

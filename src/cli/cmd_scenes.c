@@ -117,15 +117,16 @@ static char *check_command(const ScenesOptions *options, int argc, char **argv)
     static char command[] = "peel check", scene[] = "scene.gltf", theirs[] = "THEIRS";
     char **words = calloc((size_t)argc + 4, sizeof *words), *line = NULL;
     int count = 3;
+    bool value = false;
     if (words) {
         words[0] = command;
         words[1] = scene;
         words[2] = theirs;
     }
     for (int i = 1; words && i < argc; i++) {
-        if (strcmp(argv[i], "--export") == 0)
-            i++;
-        else if (strncmp(argv[i], "--export=", 9) != 0 && argv[i] != options->render.scene_path)
+        if (options_is_long(argv[i], "export", &value))
+            i += value;
+        else if (argv[i] != options->render.scene_path)
             words[count++] = argv[i];
     }
     if (words)

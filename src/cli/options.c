@@ -8,7 +8,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <libgen.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -271,23 +270,31 @@ Result options_check_fma(const RenderOptions *options)
     return result;
 }
 
+bool options_is_long(const char *word, const char *name, bool *value_follows)
+{
+    size_t length = strncmp(word, "--", 2) == 0 ? strcspn(word + 2, "=") : 0;
+    *value_follows = length > 0 && word[2 + length] == '\0';
+    return length > 0 && strncmp(word + 2, name, length) == 0;
+}
+
 Result options_check_output(const char *path)
 {
     struct stat status;
+    FileWriter writer;
+    int error = 0;
     if (!path)
         return RESULT_OK;
-    char *copy = strdup(path);
-    if (!copy)
-        return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
     bool exists = stat(path, &status) == 0;
-    int error = 0;
     if (exists && S_ISDIR(status.st_mode))
         error = EISDIR;
-    else if (access(exists ? path : dirname(copy), W_OK) != 0)
+    else if (exists && access(path, W_OK) != 0)
         error = errno;
-    free(copy);
-    return error ? result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error))
-                 : RESULT_OK;
+    if (error)
+        return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
+    if (exists && !S_ISREG(status.st_mode))
+        return RESULT_OK; /* opening it may wait, or end what reads it */
+    Result result = file_writer_open(path, &writer);
+    return result == RESULT_OK ? file_writer_close(&writer, false) : result;
 }
 
 Result options_open_directory(const char *path)

@@ -104,6 +104,10 @@ Result options_load_scene(RenderOptions *options, Scene *out);
 /* Refuses --fma where the GL driver here does not do it; call it before rendering with gl. */
 Result options_check_fma(const RenderOptions *options);
 
+/* Whether a word of a command line that was parsed is the long option `name`, which takes a value;
+ * it may be abbreviated. */
+bool options_is_long(const char *word, const char *name, bool *value_follows);
+
 /* Whether a file can be made or replaced at path (NULL is fine): found out before the work. */
 Result options_check_output(const char *path);
 

@@ -129,7 +129,7 @@ static Result compare(const Pairs *pairs, const DiffOptions *options, DiffPart *
 
 static Result perceive(const Planes *a, const Planes *b, const DiffOptions *options, DiffPart *part)
 {
-    Result result = perceive_count(a, b, &part->seen);
+    Result result = perceive_count(a, b, options->max_bytes, &part->seen);
     part->perceived = true;
     if ((double)part->seen > options->fail.percent / 100.0 * (double)part->pixels &&
         part->seen > options->fail.allowed)

@@ -23,6 +23,7 @@ typedef struct DiffOptions {
     bool warn_always; /* else only where some pixel is over `fail`, as idiff 2.4 has it */
     bool perceptual;  /* test, too, whether the difference is seen (compare/perceive.h) */
     int worst;        /* pixels to keep, from 0 */
+    size_t max_bytes; /* of an image in memory, and of the perceptual test; 0: no limit */
 } DiffOptions;
 
 DiffOptions diff_options_default(void); /* idiff's: 1e-6, nothing allowed, no hard limit */
@@ -65,6 +66,8 @@ typedef struct DiffPixel {
     int x, y, channel;
     uint32_t sample; /* of a deep pixel */
     double error;    /* INFINITY where one side alone is not finite, or the counts differ */
+    bool counts;     /* of samples differ: no channel's values */
+    bool has_ulp;    /* not where one side alone is NaN */
     uint32_t ulp;    /* of the channel */
     double *values[DIFF_SIDES]; /* of all channels; the part's */
 } DiffPixel;

@@ -194,7 +194,7 @@ static Result compare_flat(Source sources[DIFF_SIDES], const int parts[DIFF_SIDE
     const char *name = part_name(&sources[0], parts[0]);
     Result result = RESULT_OK;
     for (int side = 0; side < DIFF_SIDES && result == RESULT_OK; side++)
-        result = read_planes(&sources[side], parts[side], options->max_bytes, &planes[side]);
+        result = read_planes(&sources[side], parts[side], options->diff.max_bytes, &planes[side]);
     const Planes *a = &planes[0], *b = &planes[1];
     if (result == RESULT_OK && same_size(report, name, (DiffSize){a->x, a->y, a->width, a->height},
                                          (DiffSize){b->x, b->y, b->width, b->height})) {
@@ -216,7 +216,7 @@ static Result compare_deep(const Source sources[DIFF_SIDES], const char *name,
 {
     DeepImage images[DIFF_SIDES] = {0};
     Planes none[DIFF_SIDES] = {0};
-    size_t most = options->max_bytes ? options->max_bytes : SIZE_MAX;
+    size_t most = options->diff.max_bytes ? options->diff.max_bytes : SIZE_MAX;
     Result result = RESULT_OK;
     for (int side = 0; side < DIFF_SIDES && result == RESULT_OK; side++)
         result = exr_deep_read(sources[side].path, most, &images[side]);
@@ -290,9 +290,9 @@ Result diff_files(const char *a, const char *b, const DiffFilesOptions *options,
 {
     Source sources[DIFF_SIDES] = {0};
     *out = (DiffReport){.paths = {a, b}, .first = -1, .pictured = -1};
-    Result result = open_source(a, options->max_bytes, &sources[0]);
+    Result result = open_source(a, options->diff.max_bytes, &sources[0]);
     if (result == RESULT_OK)
-        result = open_source(b, options->max_bytes, &sources[1]);
+        result = open_source(b, options->diff.max_bytes, &sources[1]);
     if (result == RESULT_OK) {
         out->trace = is_trace(&sources[0]) && is_trace(&sources[1]);
         out->all = options->all || out->trace;

@@ -8,7 +8,6 @@ typedef struct DiffFilesOptions {
     DiffOptions diff;
     bool all;             /* all parts, by name; else the first, but of two traces all */
     const char *channels; /* commas between: compare these alone; NULL: all */
-    size_t max_bytes;     /* of a part in memory; 0: no limit */
 } DiffFilesOptions;
 
 typedef struct DiffSize {

@@ -142,7 +142,7 @@ void fold_value(Fold *fold, int index, uint32_t sample, uint32_t a_bits, uint32_
         fold->broken = true;
     if (channel->has_ulp && isnan(a) == isnan(b))
         count_distance(channel, ulp);
-    bool differs = ulp != 0;
+    bool differs = ulp != 0 || error > 0.0; /* an integer may be no float */
     channel->differing += differs;
     if (differs && !fold->part->differing && !(fold->flags & DIFF_DIFFERS)) {
         fold->part->first[0] = fold->pixel.x;
@@ -160,6 +160,7 @@ void fold_value(Fold *fold, int index, uint32_t sample, uint32_t a_bits, uint32_
         fold->pixel.error = error;
         fold->pixel.channel = index;
         fold->pixel.sample = sample;
+        fold->pixel.has_ulp = isnan(a) == isnan(b);
         fold->pixel.ulp = ulp;
     }
 }
@@ -182,7 +183,7 @@ void fold_break(Fold *fold)
     fold->broken = true;
     fold->flags |= DIFF_DIFFERS;
     fold->pixel.error = (double)INFINITY;
-    fold->pixel.ulp = UINT32_MAX;
+    fold->pixel.counts = true;
 }
 
 static int compare_pixels(const void *a, const void *b)

@@ -207,9 +207,14 @@ static bool is_seen(const Eye *eye, const View views[SIDES], size_t at)
            (red_green * red_green + yellow_blue * yellow_blue) * dark * dark > factor;
 }
 
-Result perceive_count(const Planes *a, const Planes *b, uint64_t *out)
+Result perceive_count(const Planes *a, const Planes *b, size_t max_bytes, uint64_t *out)
 {
     size_t pixels = (size_t)a->width * (size_t)a->height;
+    size_t pixel_bytes = (SIDES * (LEVELS + 2) + 1) * sizeof(float); /* the views, and scratch */
+    if (max_bytes && pixels > max_bytes / pixel_bytes)
+        return result_fail(RESULT_NO_MEMORY,
+                           "perceptual test of %dx%d pixels: needs more than %zu bytes", a->width,
+                           a->height, max_bytes);
     Eye eye = make_eye(a->width, a->height);
     View views[SIDES] = {0};
     float *scratch = memory_array(pixels, sizeof *scratch);

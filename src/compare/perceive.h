@@ -14,7 +14,7 @@ bool perceive_possible(const Planes *a, const Planes *b);
 
 /* How many pixels of two images of one size look different. Floats and halves are linear light of
  * sRGB's primaries, unorm is encoded as sRGB is; what is not finite or below 0 counts as 0.
- * NO_MEMORY. */
-Result perceive_count(const Planes *a, const Planes *b, uint64_t *out);
+ * NO_MEMORY, also where it would take more than max_bytes (0: no limit). */
+Result perceive_count(const Planes *a, const Planes *b, size_t max_bytes, uint64_t *out);
 
 #endif

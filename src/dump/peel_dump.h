@@ -29,8 +29,8 @@
  * Values are what the framebuffer stores: name its format, and no value is converted.
  *
  * Functions return 0, or -1 after a failure, which sticks: dump.error is one line. They change the
- * binding of GL_READ_FRAMEBUFFER and the pack parameters and restore them; no pixel pack buffer may
- * be bound.
+ * binding of GL_READ_FRAMEBUFFER, the framebuffer's read buffer and the pack parameters and restore
+ * them; errors that glGetError had to tell are lost. No pixel pack buffer may be bound.
  *
  * The file: for each buffer one line of text, "peel-dump 1 NAME FORMAT WIDTHxHEIGHT ROWS ORDER",
  * and its pixels, tightly packed. FORMAT: rgba32f rgba16f rgba16 rgba8 rg32f rg16 r32f d32f, or d24
@@ -176,7 +176,7 @@ static inline int peel_dump_buffer(PeelDump *dump, const char *name, unsigned fr
     static const unsigned types[] = {0x1406, 0x140B, 0x1403, 0x1401, 0x1406,
                                      0x1403, 0x1406, 0x1406, 0x1405, 0x1405};
     size_t count = (size_t)width * (size_t)height;
-    int bound = 0;
+    int bound = 0, read_buffer = 0;
     void *pixels;
     if (dump->error || !dump->ReadPixels)
         return peel_dump_fail(dump, "peel_dump: opened without a loader");
@@ -185,12 +185,15 @@ static inline int peel_dump_buffer(PeelDump *dump, const char *name, unsigned fr
         return peel_dump_fail(dump, "peel_dump: out of memory");
     dump->GetIntegerv(0x8CAAu, &bound); /* GL_READ_FRAMEBUFFER_BINDING */
     dump->BindFramebuffer(0x8CA8u, framebuffer);
+    dump->GetIntegerv(0x0C02u, &read_buffer); /* GL_READ_BUFFER, of this framebuffer */
     if (color_buffer)
         dump->ReadBuffer(color_buffer);
     if (peel_dump_read(dump, formats[format], types[format], width, height, pixels) == 0) {
         peel_dump_depths(format, count, (unsigned *)pixels);
         peel_dump_pixels(dump, name, format, width, height, 1, pixels);
     }
+    if (color_buffer)
+        dump->ReadBuffer((unsigned)read_buffer);
     dump->BindFramebuffer(0x8CA8u, (unsigned)bound);
     free(pixels);
     return dump->error ? -1 : 0;

@@ -141,11 +141,10 @@ static void print_worst(const ReportDiff *diff, const DiffPart *part, FILE *out)
         const DiffPixel *pixel = &part->worst[i];
         char place[SUMMARY_NUMBER];
         snprintf(place, sizeof place, "%d, %d", part->x + pixel->x, part->y + pixel->y);
-        bool counts = pixel->ulp == UINT32_MAX && part->deep;
         fprintf(out, "  %-12s %-12s %11s %13s  ", place,
-                counts ? "samples" : part->channels[pixel->channel].name,
+                pixel->counts ? "samples" : part->channels[pixel->channel].name,
                 isinf(pixel->error) ? "not finite" : numeral_float(pixel->error, error),
-                pixel->ulp == UINT32_MAX ? "-" : summary_count(pixel->ulp, ulp));
+                pixel->has_ulp ? summary_count(pixel->ulp, ulp) : "-");
         if (classes) {
             size_t at = (size_t)pixel->y * (size_t)part->width + (size_t)pixel->x;
             fprintf(out, "%-17s", class_key((PixelClass)diff->budget->classes[at]));

@@ -179,6 +179,8 @@ exits 0 'export' "$peel" scenes "$scene" --export contract $options
 exits 0 'one header' cmp contract/peel_dump.h "$source/src/dump/peel_dump.h"
 exits 0 'the line in it' grep -q 'peel check scene.gltf THEIRS --size 96x54' contract/contract.json
 exits 0 'the page alone' "$peel" scenes --contract -o contract.html
+exits 0 'an abbreviation' "$peel" scenes chain --exp shorter --size 96x54
+exits 0 'an abbreviation' grep -q 'peel check scene.gltf THEIRS --size 96x54"' shorter/contract.json
 exits 0 'the page alone' cmp contract.html contract/index.html
 exits 0 'foreign' "$foreign/foreign" contract foreign.png foreign.peel
 check 0 foreign.png

@@ -264,6 +264,8 @@ refuse 'unknown' "'-foo' is no option" -foo a.exr b.exr
 refuse 'scene' 'no such file' --scene nosuch a.exr b.exr
 refuse 'size' 'the images have 8x6 pixels' --scene chain --size 9x9 a.exr b.exr
 refuse 'memory' 'need more than 100 bytes' --max-memory 100 a.exr b.exr
+refuse 'memory to see with' 'test of 8x6 pixels: needs more than 4000 bytes' -p --max-memory 4000 \
+    a.exr b.exr
 refuse 'JSON' 'cannot write' --json /nosuch/file a.exr b.exr
 exits 0 'help' "$peel" diff --help
 exits 0 'nothing else is left' test "$(find . -name '.peel-*')" = ''

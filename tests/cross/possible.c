@@ -68,6 +68,21 @@ static Place background(const Possible *possible, const RenderDesc *desc, size_t
     return place(possible, desc, pixel, side->opaque);
 }
 
+const char *possible_repetitions(const Possible *possible, const RenderDesc *desc, size_t pixel,
+                                 const StructurePixel *side)
+{
+    size_t width = (size_t)possible->view.width;
+    for (int i = 1; i < side->count; i++) {
+        if (structure_find(side->ids, i, side->ids[i]) < 0)
+            continue;
+        if (!desc || !bound_may_repeat(
+                         possible->triangles, soup_triangle_of(&possible->soup, side->ids[i]),
+                         (int)(pixel % width), possible->view.height - 1 - (int)(pixel / width)))
+            return "a layer twice, of a triangle whose pieces cannot overlap";
+    }
+    return NULL;
+}
+
 const char *possible_fragments(const Possible *possible, const RenderDesc *desc, size_t pixel,
                                const StructurePixel *side)
 {
@@ -85,7 +100,7 @@ const char *possible_fragments(const Possible *possible, const RenderDesc *desc,
             return "a layer that must be behind the opaque triangle";
         front = here.nearest > front ? here.nearest : front;
     }
-    return NULL;
+    return possible_repetitions(possible, desc, pixel, side);
 }
 
 const char *possible_all(const Possible *possible, const RenderDesc *desc, size_t pixel,

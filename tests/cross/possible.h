@@ -21,6 +21,11 @@ void possible_destroy(Possible *possible);
 const char *possible_fragments(const Possible *possible, const RenderDesc *desc, size_t pixel,
                                const StructurePixel *side);
 
+/* The same: that it has a fragment twice, which two pieces of one triangle may be where rounding
+ * folds what clipping leaves. */
+const char *possible_repetitions(const Possible *possible, const RenderDesc *desc, size_t pixel,
+                                 const StructurePixel *side);
+
 /* The same of a side that loses nothing: that it has not what another has there. */
 const char *possible_all(const Possible *possible, const RenderDesc *desc, size_t pixel,
                          const StructurePixel *side, const StructurePixel *other);

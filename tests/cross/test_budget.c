@@ -161,6 +161,37 @@ START_TEST(test_repeated)
 }
 END_TEST
 
+/* A triangle next to the least numbers there are: clipped, its pieces are folded over each other,
+ * so that pixels have it twice. That is no layer peeled twice. */
+START_TEST(test_folded)
+{
+    static const float corners[9] = {-0x1.9e7e4ep-116f, 0x1.51cb2p-119f,  -0x1.78db0cp-119f,
+                                     0x1.0e8a26p-118f,  0x1.6a5cecp-120f, -0x1.d10234p-119f,
+                                     0x1.4f4734p-116f,  0x1.afaca8p-120f, -0x1.2b6662p-119f};
+    static const double depths[] = {1.0}, turned[3] = {0.9995714426040649, -0.02927379682660103};
+    static Layers layers;
+    RenderDesc desc = {.width = 255, .height = 31};
+    Budget budget;
+    layers_make(1, depths, &layers);
+    memcpy(layers.position, corners, sizeof corners);
+    layers.mesh.vertex_count = 3;
+    layers.mesh.triangle_count = 1;
+    layers.scene.instance_count = 1;
+    layers.instances[0].world = matrix_scale(-1.0, 1.0, 1.0);
+    layers.camera.world.m[0] = layers.camera.world.m[10] = turned[0];
+    layers.camera.world.m[2] = turned[1];
+    layers.camera.world.m[8] = -turned[1];
+    layers.camera.yfov = 1.4;
+    layers.camera.near = 0x1p-124;
+    layers.camera.far = 0x1.2p-118;
+    run(&layers.scene, &desc, &budget);
+    ck_assert_uint_eq(budget.counts[CLASS_REPEATED], 0);
+    ck_assert_uint_eq(budget.counts[CLASS_COVERAGE], 17); /* in 3 of these it is twice */
+    ck_assert_uint_eq(budget.counts[CLASS_UNEXPLAINED], 0);
+    budget_free(&budget);
+}
+END_TEST
+
 /* A layer whose depth becomes that of the opaque surface: no method has it. */
 START_TEST(test_depth_of_opaque)
 {
@@ -279,6 +310,7 @@ int main(void)
     tcase_add_test(tcase, test_ties);
     tcase_add_test(tcase, test_depth);
     tcase_add_test(tcase, test_repeated);
+    tcase_add_test(tcase, test_folded);
     tcase_add_loop_test(tcase, test_depth_of_opaque, 0, 3);
     tcase_add_test(tcase, test_clamp);
     tcase_add_test(tcase, test_seed);

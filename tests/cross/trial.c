@@ -128,8 +128,6 @@ static const char *impossible_layers(const Truthful *study, size_t pixel, PixelC
     const char *what = NULL;
     if (!structure_same(ref, stored))
         what = possible_fragments(study->possible, study->desc, pixel, ref);
-    if (!what && class == CLASS_REPEATED && study->desc->peel_test != PEEL_TEST_RAW)
-        what = "a layer peeled twice by depths as they are stored";
     /* Of all of its layers: beyond the limit, or a layer that is peeled for ever. */
     bool behind = study->desc->passes > 0 || study->desc->peel_test == PEEL_TEST_RAW;
     for (int i = stored->count; class == CLASS_LOST_TIE && i-- > 0 && !what;) {
@@ -147,6 +145,8 @@ static void visit(void *context, size_t pixel, StructurePixel *sides)
     Truthful *study = context;
     const Truths *truths = study->truths;
     const char *what = impossible(study, pixel, sides);
+    if (!what && study->desc->peel_test != PEEL_TEST_RAW)
+        what = possible_repetitions(study->possible, study->desc, pixel, &sides[SIDE_REF]);
     PixelClass class = class_of_fragments(study->desc, &sides[SIDE_REF], &sides[SIDE_TRUTH],
                                           &sides[SIDE_BEST], &sides[SIDE_STORED]);
     if (!what)

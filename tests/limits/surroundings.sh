@@ -78,6 +78,8 @@ unprivileged() {
     chmod 755 .
     mkdir closed mine
     cp "$peel" program
+    echo x >closed/there.json
+    chmod 666 closed/there.json
     echo x >secret.exr
     echo x >secret.gltf
     chmod 000 secret.exr secret.gltf
@@ -102,6 +104,11 @@ unprivileged() {
         'hard --export ../closed/a' \
         'blend vectors --set random --count 3 -o ../closed/a.csv'; do
         refuses 'a folder that may not be written' '../closed/a.*Permission denied' $as ../program $output
+    done
+    for output in 'hard fan --ci --report ../closed' \
+        'compare tutorial --size 8x8 --json ../closed/there.json'; do
+        exits 4 'found before the work' timeout 20 $as ../program $output
+        check 'found before the work' test "$(wc -l <output)" = 1
     done
     # Threads: those of other users' processes do not count.
     for most in 0 3; do

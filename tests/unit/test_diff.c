@@ -135,6 +135,7 @@ START_TEST(test_not_finite)
     ck_assert_int_eq(part.worst[0].x, 1);
     ck_assert(isinf(part.worst[2].error));
     ck_assert_int_eq(part.worst[3].x, 7);
+    ck_assert(!part.worst[0].has_ulp && part.worst[1].has_ulp && !part.worst[1].counts);
     ck_assert(isnan(part.errors[1]));
     ck_assert_float_eq(part.errors[2], 0.0f);
     uint64_t binned = 0;
@@ -202,13 +203,16 @@ START_TEST(test_stored)
         {KIND_UNORM, 255, 255, KIND_FLOAT, 0, 0x3f7fffff, 1, 0x1p-24},
         {KIND_HALF, 0, 0x3c00, KIND_FLOAT, 0, 0x3f800000, 0, 0.0},
         {KIND_HALF, 0, 0x0001, KIND_FLOAT, 0, 0x33800001, 1, 0x1p-47},
+        /* The same float, and another value. */
+        {KIND_UINT, 0, 16777217, KIND_FLOAT, 0, 0x4b800000, 0, 1.0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         DiffPart part = diff_bits(rows[i].kind_a, rows[i].max_a, rows[i].a, rows[i].kind_b,
                                   rows[i].max_b, rows[i].b);
         ck_assert_uint_eq(part.channels[0].max_ulp, rows[i].ulp);
         ck_assert_double_eq(part.max, rows[i].error);
-        ck_assert_uint_eq(part.differing, rows[i].ulp != 0);
+        ck_assert_uint_eq(part.differing, rows[i].ulp != 0 || rows[i].error > 0.0);
+        ck_assert_uint_eq(part.channels[0].differing, part.differing);
         diff_part_free(&part);
     }
 }
@@ -398,6 +402,7 @@ START_TEST(test_deep)
     ck_assert_uint_eq(part.differing, 2);
     ck_assert_int_eq(part.verdict, DIFF_FAILURE);
     ck_assert_int_eq(part.worst_count, 2);
+    ck_assert(part.worst[0].counts && !part.worst[0].has_ulp);
     diff_part_free(&part);
     deep_free(&image_a);
     deep_free(&image_b);

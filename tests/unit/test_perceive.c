@@ -26,7 +26,7 @@ static Planes grey_image(int width, int height, float level)
 static uint64_t seen(Planes *a, Planes *b)
 {
     uint64_t count;
-    ck_assert_int_eq(perceive_count(a, b, &count), RESULT_OK);
+    ck_assert_int_eq(perceive_count(a, b, 0, &count), RESULT_OK);
     planes_free(a);
     planes_free(b);
     return count;
