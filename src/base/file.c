@@ -123,8 +123,24 @@ static bool follow_dangling(FileWriter *writer)
     return true;
 }
 
+/* A file that one of the program's own streams goes to, as /dev/stdout may be: what that has
+ * written stays. −1: it is none. */
+static int open_stream(const struct stat *status)
+{
+    for (int stream = STDOUT_FILENO; stream <= STDERR_FILENO; stream++) {
+        struct stat own;
+        int mode = fcntl(stream, F_GETFL);
+        if (mode < 0 || (mode & O_ACCMODE) == O_RDONLY || fstat(stream, &own) != 0 ||
+            own.st_dev != status->st_dev || own.st_ino != status->st_ino)
+            continue;
+        fflush(stdout);
+        return fcntl(stream, F_DUPFD_CLOEXEC, 0);
+    }
+    return -1;
+}
+
 /* A device must not be replaced by a regular file; a symbolic link stays, its target changes or
- * comes into being. */
+ * comes into being. A file that may not be written is not replaced either, and rights stay. */
 static int open_target(FileWriter *writer)
 {
     struct stat status;
@@ -136,12 +152,20 @@ static int open_target(FileWriter *writer)
     }
     if (!S_ISREG(status.st_mode))
         return open(writer->path, O_WRONLY | O_CLOEXEC); /* a directory refuses */
-    char *resolved = realpath(writer->path, NULL);
+    int own = open_stream(&status);
+    writer->shared = own >= 0;
+    if (writer->shared)
+        return own;
+    char *resolved = access(writer->path, W_OK) == 0 ? realpath(writer->path, NULL) : NULL;
     if (!resolved)
         return -1;
     free(writer->path);
     writer->path = resolved;
-    return create_temporary(writer->path, &writer->temporary);
+    int descriptor = create_temporary(writer->path, &writer->temporary);
+    if (descriptor >= 0 && fchmod(descriptor, status.st_mode & 0777) != 0) {
+        /* a file system without rights */
+    }
+    return descriptor;
 }
 
 static void release(FileWriter *writer)
@@ -222,6 +246,8 @@ Result file_writer_put_at(FileWriter *writer, const void *data, size_t size, uin
 {
     if (writer->error)
         return note(writer, 0);
+    if (writer->shared)
+        return note(writer, ESPIPE);
     const char *bytes = data;
     while (size) {
         ssize_t written = pwrite(fileno(writer->stream), bytes, size, (off_t)offset);

@@ -14,11 +14,13 @@ typedef struct FileWriter {
     FILE *stream;
     char *path;      /* the target, symbolic links followed */
     char *temporary; /* NULL for a device or pipe, which is written directly */
+    bool shared;     /* with the standard output or standard error, whose file it is */
     int error;       /* errno of the first failure; 0 while all is well */
 } FileWriter;
 
 /* Starts writing path. IO with a message naming path when its directory is missing or refuses, or
- * when path is a directory; *out then needs no close. */
+ * when path is a directory or a file that may not be written; *out then needs no close. A file that
+ * the standard output or standard error goes to is appended to, in order with what they print. */
 Result file_writer_open(const char *path, FileWriter *out);
 
 /* The same to the standard output, which stays open. */

@@ -46,6 +46,16 @@ static int utf8_length(const unsigned char *s)
     return 0;
 }
 
+void text_make_utf8(char *string)
+{
+    for (unsigned char *s = (unsigned char *)string; *s; s++) {
+        int length = *s < 0x80 ? 1 : utf8_length(s);
+        if (length == 0)
+            *s = '?';
+        s += length > 1 ? length - 1 : 0;
+    }
+}
+
 void text_json_string(Text *text, const char *string)
 {
     text_print(text, "\"");

@@ -15,6 +15,9 @@ typedef struct Text {
 
 void text_print(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Puts '?' for every byte that is not UTF-8. */
+void text_make_utf8(char *string);
+
 /* A JSON string with its quotes. Bytes beyond ASCII that are not UTF-8 become '?'. */
 void text_json_string(Text *text, const char *string);
 

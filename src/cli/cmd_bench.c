@@ -342,11 +342,9 @@ static Result write_files(const BenchCommand *command, const BenchReport *report
 
 static Result run(BenchCommand *command, const char *line, BenchReport *report)
 {
-    Result result = command->report ? options_open_directory(command->report) : RESULT_OK;
+    Result result = load_scenes(command);
     if (result == RESULT_OK)
-        result = options_check_output(command->json);
-    if (result == RESULT_OK)
-        result = load_scenes(command);
+        result = options_check_outputs(command->json, NULL, command->report);
     if (result != RESULT_OK)
         return result;
     command->plan.bound = bind_bench;

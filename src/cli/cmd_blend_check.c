@@ -411,8 +411,10 @@ static Result check_usage(const BlendCheckCommand *command)
     int modes = (command->path != NULL) + command->gl + command->list;
     if (modes != 1)
         return result_fail(RESULT_BAD_INPUT, "blend check: expected one of FILE, --gl and --list");
-    if (!command->gl && (command->sets || command->limit || command->fma != FMA_AUTO))
-        return result_fail(RESULT_BAD_INPUT, "blend check: --set, --limit and --fma go with --gl");
+    if (!command->gl &&
+        (command->sets || command->limit || command->seed || command->fma != FMA_AUTO))
+        return result_fail(RESULT_BAD_INPUT,
+                           "blend check: --set, --limit, --seed and --fma go with --gl");
     if (command->path && (command->formats || command->has_equation))
         return result_fail(RESULT_BAD_INPUT,
                            "blend check: --format and --equation are the file's own; they go with "

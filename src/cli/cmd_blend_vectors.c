@@ -362,6 +362,9 @@ int cmd_blend_vectors(int argc, char **argv)
         return code == OPTIONS_HELPED ? EXIT_AGREE : code;
     signal(SIGPIPE, SIG_IGN); /* a reader that went away is an error of writing */
     if (command.list) {
+        if (command.output || command.checksum)
+            return options_fail(
+                result_fail(RESULT_BAD_INPUT, "--list: expected neither -o nor --checksum"));
         print_list();
         return EXIT_AGREE;
     }

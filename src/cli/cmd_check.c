@@ -140,9 +140,7 @@ static Result prepare(const CheckCommand *command)
     if (desc->bound && !method_has_bound(desc))
         return result_fail(RESULT_BAD_INPUT, "--bound: there is none for --method %s",
                            method_info(desc->method)->name);
-    Result result = options_check_output(command->json);
-    return result == RESULT_OK && command->report ? options_open_directory(command->report)
-                                                  : result;
+    return options_check_outputs(command->json, NULL, command->report);
 }
 
 static Result check(const CheckCommand *command, const Scene *scene, CheckReport *report,

@@ -139,9 +139,7 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
     size_t count = 0;
     if (command->budget)
         return result_fail(RESULT_BAD_INPUT, "--budget: expected a single --method");
-    Result result = command->report ? options_open_directory(command->report) : RESULT_OK;
-    if (result == RESULT_OK)
-        result = options_check_output(command->json);
+    Result result = options_check_outputs(command->json, NULL, command->report);
     if (result == RESULT_OK)
         result = options_check_fma(&command->render);
     *agree = true;
@@ -187,11 +185,7 @@ static Result explain(const CompareCommand *command, const Scene *scene, Threewa
 
 static Result compare(const CompareCommand *command, const Scene *scene, Threeway *report)
 {
-    Result result = command->report ? options_open_directory(command->report) : RESULT_OK;
-    if (result == RESULT_OK)
-        result = options_check_output(command->json);
-    if (result == RESULT_OK)
-        result = options_check_output(command->classes);
+    Result result = options_check_outputs(command->json, command->classes, command->report);
     if (result == RESULT_OK)
         result = options_check_fma(&command->render);
     if (result == RESULT_OK)

@@ -75,8 +75,7 @@ static Result check(const DiagnoseCommand *command)
         return result_fail(RESULT_BAD_INPUT, "diagnose: expected a scene and an image, PNG or EXR");
     if (command->render.all_methods)
         return result_fail(RESULT_BAD_INPUT, "--method all: expected one of them here");
-    Result result = command->report ? options_open_directory(command->report) : RESULT_OK;
-    return result == RESULT_OK ? options_check_output(command->json) : result;
+    return options_check_outputs(command->json, NULL, command->report);
 }
 
 static Result diagnose(const DiagnoseCommand *command, const Scene *scene, const GivenImage *given,
@@ -131,9 +130,9 @@ static int run(DiagnoseCommand *command)
 
 static int list(const DiagnoseCommand *command)
 {
-    if (command->render.scene_path || command->image)
-        return options_fail(
-            result_fail(RESULT_BAD_INPUT, "diagnose --list: expected no scene and no image"));
+    if (command->render.scene_path || command->image || command->json || command->report)
+        return options_fail(result_fail(RESULT_BAD_INPUT, "diagnose --list: expected no scene, no "
+                                                          "image, no --json and no --report"));
     report_diagnose_list(stdout);
     return EXIT_AGREE;
 }

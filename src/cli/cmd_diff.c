@@ -325,9 +325,7 @@ static Result show(DiffCommand *command, const DiffReport *report)
 
 static Result diff(DiffCommand *command, DiffReport *report)
 {
-    Result result = options_check_output(command->output);
-    if (result == RESULT_OK)
-        result = options_check_output(command->json);
+    Result result = options_check_outputs(command->output, command->json, NULL);
     command->files.diff.max_bytes =
         command->render.desc.max_memory ? command->render.desc.max_memory : RENDER_MEMORY_DEFAULT;
     if (result == RESULT_OK && !command->quiet)

@@ -90,9 +90,11 @@ static const struct argp command_argp = {
     NULL,
     NULL};
 
-static int list(void)
+static int list(const HardCommand *command)
 {
     size_t count;
+    if (command->json || command->report || command->folder || command->slice)
+        return options_fail(result_fail(RESULT_BAD_INPUT, "hard --list: expected no other option"));
     const HardScene *scenes = hard_scenes_table(&count);
     for (size_t i = 0; i < count; i++)
         printf("%-26s %s\n%-26s %s\n", scenes[i].name, scenes[i].why, "", scenes[i].source);
@@ -153,9 +155,7 @@ static char *command_line(const HardCommand *command, bool all)
 
 static Result run_cases(const HardCommand *command, HardReport *reports, HardTotals *totals)
 {
-    Result result = options_check_output(command->json);
-    if (result == RESULT_OK && command->report)
-        result = options_open_directory(command->report);
+    Result result = options_check_outputs(command->json, NULL, command->report);
     for (size_t i = 0; i < command->count && result == RESULT_OK; i++) {
         result = hard_run(command->cases[i], command->slice, bind_renderers, &reports[i]);
         if (result != RESULT_OK)
@@ -195,10 +195,13 @@ int cmd_hard(int argc, char **argv)
     int code = options_parse(&command_argp, argc, argv, &command);
     if (code || command.list) {
         free(command.cases);
-        return code && code != OPTIONS_HELPED ? code : command.list && !code ? list() : EXIT_AGREE;
+        return code && code != OPTIONS_HELPED ? code : code ? EXIT_AGREE : list(&command);
     }
     bool all = command.count == 0;
     Result result = choose_cases(&command);
+    if (result == RESULT_OK && command.folder && (command.json || command.report || command.slice))
+        result = result_fail(RESULT_BAD_INPUT,
+                             "hard --export: expected neither --json nor --report nor --ci");
     command.line = command_line(&command, all);
     if (result == RESULT_OK && !command.line)
         result = result_fail(RESULT_NO_MEMORY, "out of memory");

@@ -158,18 +158,13 @@ static Result check_deep(const RenderCommand *command)
 /* What can be known before the work. */
 static Result check(const RenderCommand *command)
 {
-    if (command->output && command->trace && strcmp(command->output, command->trace) == 0)
-        return result_fail(RESULT_BAD_INPUT, "--trace %s: expected another file than -o",
-                           command->trace);
     if (command->render.all_methods)
         return result_fail(RESULT_BAD_INPUT, "--method all: expected one of them here");
     Result result = check_mutations(command);
     if (result == RESULT_OK)
         result = check_deep(command);
     if (result == RESULT_OK)
-        result = options_check_output(command->output);
-    if (result == RESULT_OK)
-        result = options_check_output(command->trace);
+        result = options_check_outputs(command->output, command->trace, NULL);
     if (result == RESULT_OK && command->renderer == RENDERER_GL)
         result = options_check_fma(&command->render);
     return result;

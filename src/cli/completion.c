@@ -413,7 +413,8 @@ int completion_print(int argc, char **argv)
     else if (strcmp(shell, "fish") == 0)
         print_fish(commands, count);
     else
-        return options_fail(
-            result_fail(RESULT_BAD_INPUT, "--completion %s: expected bash, zsh or fish", shell));
+        return options_fail(result_fail(RESULT_BAD_INPUT,
+                                        "--completion%s%s: expected one of bash, zsh and fish",
+                                        argc > 0 ? " " : "", argc > 0 ? argv[argc - 1] : ""));
     return EXIT_AGREE;
 }

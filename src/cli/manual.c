@@ -274,6 +274,6 @@ int manual_print(int argc, char **argv)
             put_page(commands, count, &commands[i]);
             return EXIT_AGREE;
         }
-    return options_fail(
-        result_fail(RESULT_BAD_INPUT, "--man %s: no such command; see 'peel --help'", argv[0]));
+    return options_fail(result_fail(
+        RESULT_BAD_INPUT, "--man %s: no such command; see 'peel --help'", argv[argc - 1]));
 }

@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* asprintf */
 #include "cli/options.h"
 
 #include "base/file.h"
@@ -295,6 +296,57 @@ Result options_check_output(const char *path)
         return RESULT_OK; /* opening it may wait, or end what reads it */
     Result result = file_writer_open(path, &writer);
     return result == RESULT_OK ? file_writer_close(&writer, false) : result;
+}
+
+/* The path of a file, that it has or will have, without links. The caller frees; NULL: none. */
+static char *place_of(const char *path)
+{
+    char *place = realpath(path, NULL), *copy = place ? NULL : strdup(path), *joined = NULL;
+    if (!copy)
+        return place;
+    char *slash = strrchr(copy, '/');
+    const char *name = slash ? slash + 1 : copy, *folder = slash == copy ? "/" : slash ? copy : ".";
+    if (slash)
+        *slash = '\0';
+    place = realpath(folder, NULL);
+    if (place && asprintf(&joined, "%s/%s", place, name) < 0)
+        joined = NULL;
+    free(place);
+    free(copy);
+    return joined;
+}
+
+static bool same_place(const char *a, const char *b)
+{
+    struct stat status;
+    if (stat(a, &status) == 0 && !S_ISREG(status.st_mode))
+        return false; /* a device takes both */
+    char *places[2] = {place_of(a), place_of(b)};
+    bool same = places[0] && places[1] && strcmp(places[0], places[1]) == 0;
+    free(places[0]);
+    free(places[1]);
+    return same;
+}
+
+Result options_check_outputs(const char *first, const char *second, const char *report)
+{
+    char *page = NULL;
+    Result result = report ? options_open_directory(report) : RESULT_OK;
+    if (result == RESULT_OK && report && asprintf(&page, "%s/index.html", report) < 0) {
+        page = NULL;
+        result = result_fail(RESULT_NO_MEMORY, "%s: out of memory", report);
+    }
+    const char *paths[] = {first, second, page};
+    for (int i = 0; i < 2; i++)
+        for (int k = i + 1; k < 3 && result == RESULT_OK; k++)
+            if (paths[i] && paths[k] && same_place(paths[i], paths[k]))
+                result =
+                    result_fail(RESULT_BAD_INPUT,
+                                "%s: two outputs in one file, expected another name", paths[i]);
+    free(page);
+    if (result == RESULT_OK)
+        result = options_check_output(first);
+    return result == RESULT_OK ? options_check_output(second) : result;
 }
 
 Result options_open_directory(const char *path)

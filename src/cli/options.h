@@ -111,6 +111,10 @@ bool options_is_long(const char *word, const char *name, bool *value_follows);
 /* Whether a file can be made or replaced at path (NULL is fine): found out before the work. */
 Result options_check_output(const char *path);
 
+/* The same of a command's outputs, each of which may be NULL: two files, which must not be one, nor
+ * the page in the directory `report`, which is made. */
+Result options_check_outputs(const char *first, const char *second, const char *report);
+
 /* Makes a directory, and finds it writable, before minutes of work and not after. */
 Result options_open_directory(const char *path);
 

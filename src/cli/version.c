@@ -146,8 +146,8 @@ int version_print(int argc, char **argv)
     Library libraries[LIBRARIES];
     Text built = {0};
     if (argc > 0 && !json)
-        return options_fail(
-            result_fail(RESULT_BAD_INPUT, "--version %s: expected nothing or --json", argv[0]));
+        return options_fail(result_fail(
+            RESULT_BAD_INPUT, "--version %s: expected nothing or --json", argv[argc - 1]));
     find_libraries(libraries);
     list_simd(pipeline_simd_built, &built);
     Result result = built.result;

@@ -86,23 +86,30 @@ static Result png_size(const unsigned char *bytes, size_t count, const char *lab
                                                                              : stb_failure(label);
 }
 
-/* Where a PNG's PLTE chunk begins, if it has colours stored as indices and fewer than the 256 that
- * indices can name; 0 otherwise. Source: PNG (Third Edition), 5.3 and 11.2.2. */
-static size_t find_short_palette(const unsigned char *bytes, size_t count)
+/* Where a PNG's chunk of this type begins, before its pixels; 0: there is none. Source: PNG (Third
+ * Edition), 5.3. */
+static size_t find_chunk(const unsigned char *bytes, size_t count, const char *type, size_t *length)
 {
-    if (count < 26 || bytes[25] != 3)
-        return 0;
     for (size_t at = 8; count - at >= 12;) {
         const unsigned char *chunk = bytes + at;
-        size_t length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 |
-                        (size_t)chunk[3];
-        if (length > count - at - 12)
+        *length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 |
+                  (size_t)chunk[3];
+        if (*length > count - at - 12 || memcmp(chunk + 4, "IDAT", 4) == 0)
             return 0;
-        if (memcmp(chunk + 4, "PLTE", 4) == 0)
-            return length < PALETTE_BYTES && length % 3 == 0 ? at : 0;
-        at += 12 + length;
+        if (memcmp(chunk + 4, type, 4) == 0)
+            return at;
+        at += 12 + *length;
     }
     return 0;
+}
+
+/* Where a PNG's PLTE chunk begins, if it has colours stored as indices and fewer than the 256 that
+ * indices can name; 0 otherwise. Source: PNG (Third Edition), 11.2.2. */
+static size_t find_short_palette(const unsigned char *bytes, size_t count)
+{
+    size_t length,
+        at = count >= 26 && bytes[25] == 3 ? find_chunk(bytes, count, "PLTE", &length) : 0;
+    return at && length < PALETTE_BYTES && length % 3 == 0 ? at : 0;
 }
 
 /* The file with the palette that begins at `at` filled up with black, the colour of what has none:
@@ -202,5 +209,10 @@ Result decode_image(const unsigned char *bytes, size_t count, const char *label,
 Result decode_channels(const unsigned char *bytes, size_t count, const char *label, int *channels)
 {
     int width, height;
-    return size_of(bytes, count, label, &width, &height, channels);
+    size_t length;
+    Result result = size_of(bytes, count, label, &width, &height, channels);
+    /* One colour of a PNG may be transparent: then it was decoded with alpha. */
+    bool colors = result == RESULT_OK && *kind_of(bytes, count) == 'P' && *channels % 2 == 1;
+    *channels += colors && find_chunk(bytes, count, "tRNS", &length);
+    return result;
 }

@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* asprintf */
 #include "scene/gltf_assimp.h"
 
 #include "base/file.h"
@@ -121,7 +122,15 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     return file;
 }
 
-/* The reduced document in the form that the file has: text, or binary with the same BIN chunk. */
+/* Whether it has to be given to Assimp as binary, which takes the first buffer for the BIN chunk
+ * whatever its uri says. */
+static bool is_binary(const char *path, const GltfJson *json)
+{
+    const json_t *first = gltf_json_element(json, "buffers", 0);
+    return gltf_file_kind(path) == 1 && !json_object_get(first, "uri");
+}
+
+/* The reduced document as text, or binary with the same BIN chunk. */
 static Result serialize(const char *path, const GltfJson *json, Document *document)
 {
     json_memory_begin();
@@ -133,7 +142,7 @@ static Result serialize(const char *path, const GltfJson *json, Document *docume
         free(text);
         return whole;
     }
-    if (gltf_file_kind(path) != 1) {
+    if (!is_binary(path, json)) {
         document->bytes = (unsigned char *)text;
         document->count = strlen(text);
         return RESULT_OK;
@@ -171,14 +180,21 @@ static bool is_gltf2(const struct aiScene *scene)
 
 Result gltf_assimp_import(const char *path, const GltfJson *json, const struct aiScene **out)
 {
-    Document document = {.path = path};
+    Document document = {0};
     *out = NULL;
+    /* Assimp knows text by the name. */
+    char *name = NULL;
+    if (asprintf(&name, "%s%s", path, is_binary(path, json) ? "" : ".gltf") < 0)
+        return result_fail(RESULT_NO_MEMORY, "%s: out of memory to import it", path);
+    document.path = name;
     Result result = serialize(path, json, &document);
-    if (result)
+    if (result) {
+        free(name);
         return result;
+    }
     /* No log stream is attached: Assimp then logs nowhere. */
     struct aiFileIO io = {open_file, close_file, (aiUserData)&document};
-    *out = aiImportFileEx(path, 0, &io);
+    *out = aiImportFileEx(name, 0, &io);
     if (document.out_of_memory)
         result = result_fail(RESULT_NO_MEMORY, "%s: out of memory to import it", path);
     else if (!*out)
@@ -186,6 +202,7 @@ Result gltf_assimp_import(const char *path, const GltfJson *json, const struct a
     else if (!is_gltf2(*out) || !(*out)->mRootNode)
         result = result_fail(RESULT_BAD_INPUT, "%s: not read as glTF 2.0", path);
     free(document.bytes);
+    free(name);
     return result;
 }
 

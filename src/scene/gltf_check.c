@@ -31,9 +31,12 @@ static Result check_extensions(const GltfCheck *check)
 {
     static const char *const harmless[] = {"KHR_lights_punctual", "KHR_materials_", "KHR_texture_",
                                            "EXT_texture_"};
-    const json_t *name;
+    const json_t *names = gltf_array(check, "extensionsRequired"), *name;
     size_t i;
-    json_array_foreach(gltf_array(check, "extensionsRequired"), i, name)
+    if (names && !json_is_array(names))
+        return result_fail(RESULT_BAD_INPUT, "%s: extensionsRequired: expected an array",
+                           check->path);
+    json_array_foreach(names, i, name)
     {
         const char *text = json_string_value(name);
         bool known = false;

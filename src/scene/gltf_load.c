@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "base/text.h"
 #include "scene/builder.h"
 #include "scene/gltf.h"
 #include "scene/gltf_assimp.h"
@@ -335,6 +336,7 @@ static Result convert(Loader *loader, Scene *out)
         return result_fail(RESULT_NO_MEMORY, "%s: out of memory", loader->path);
     }
     *strrchr(name, '.') = 0; /* the extension was checked */
+    text_make_utf8(name);
     memset(loader->materials, 0xff, materials * sizeof *loader->materials);
     loader->builder = builder_begin(name);
     free(name);

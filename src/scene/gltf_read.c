@@ -26,7 +26,9 @@ static Result split_binary(const char *path, GltfJson *json, size_t count, const
                            word(file + 4));
     *text = (const char *)file + 20;
     *length = word(file + 12);
-    if (memcmp(file + 16, "JSON", 4) != 0 || *length > count - 20 || word(file + 8) > count)
+    if (memcmp(file + 16, "JSON", 4) != 0)
+        return result_fail(RESULT_BAD_INPUT, "%s: expected JSON as the first chunk", path);
+    if (*length > count - 20 || word(file + 8) > count)
         return result_fail(RESULT_BAD_INPUT, "%s: truncated: %zu bytes, expected %u", path, count,
                            word(file + 8));
     size_t next = 20 + (*length + 3) / 4 * 4;
@@ -46,8 +48,11 @@ static Result check_version(const char *path, const json_t *root)
         json_string_value(json_object_get(json_object_get(root, "asset"), "version"));
     if (!version)
         return result_fail(RESULT_BAD_INPUT, "%s: not a glTF file, expected asset.version", path);
-    if (strncmp(version, "2.", 2) != 0)
-        return result_fail(RESULT_UNSUPPORTED, "%s: glTF version %s, expected 2.0", path, version);
+    const char *least =
+        json_string_value(json_object_get(json_object_get(root, "asset"), "minVersion"));
+    if (strncmp(version, "2.", 2) != 0 || (least && strcmp(least, "2.0") != 0))
+        return result_fail(RESULT_UNSUPPORTED, "%s: glTF version %s, expected 2.0", path,
+                           least ? least : version);
     return RESULT_OK;
 }
 

@@ -166,7 +166,7 @@ refuse 'flatten: truncated' 'truncated.exr' flatten truncated.exr -o a.exr
 refuse 'flatten: memory' '--max-memory' flatten deep.exr -o a.exr --max-memory 2K
 refuse 'flatten: memory, text' '--max-memory' flatten deep.exr -o a.exr --max-memory much
 refuse 'flatten: directory missing' 'nosuch/a.png' flatten deep.exr -o nosuch/a.png
-refuse 'one file for two' 'another file' render tutorial --size 8x8 -o a.exr --trace a.exr
+refuse 'one file for two' 'two outputs in one file' render tutorial --size 8x8 -o a.exr --trace a.exr
 refuse 'disk full' '/dev/full' compare tutorial --size 8x8 --json /dev/full
 refuse 'report below a file' 'text.gltf' compare tutorial --size 8x8 --report text.gltf/out
 refuse 'report of all methods below a file' 'text.gltf' compare tutorial --size 8x8 --method all \

@@ -49,6 +49,38 @@ for name in opaque.depth opaque.normal opaque.position opaque.diffuse opaque.mat
 done
 has 'trace' info 'peel:format: "rgba8"'
 
+# The file that standard output goes to keeps what was written to it, and no two outputs are one file.
+echo before >log.txt
+"$peel" blend vectors --count 1 -o /dev/stdout >>log.txt
+expect 'appended' test "$(head -1 log.txt)" = before
+has 'appended' log.txt '^# end: 1 '
+"$peel" compare chain.gltf --size 9x9 --json /dev/fd/1 >log.txt
+has 'table and JSON' log.txt '^AGREE'
+has 'table and JSON' log.txt '"agree"'
+# shellcheck disable=SC2016 # the inner shell's
+exits 4 'a trace into it' sh -c '"$0" render chain.gltf --size 9x9 --trace /dev/fd/1 >t.exr' "$peel"
+ln -s a.exr link.exr
+mkdir report
+for outputs in "render chain.gltf --size 9x9 -o a.exr --trace ./a.exr" \
+    "render chain.gltf --size 9x9 -o a.exr --trace link.exr" \
+    "compare chain.gltf --size 9x9 --budget --json one.png --classes $PWD/one.png" \
+    "compare chain.gltf --size 9x9 --report report --json report/index.html" \
+    "diff a.exr b.exr -o one.png --json one.png"; do
+    # shellcheck disable=SC2086 # a list of words
+    exits 4 'two outputs' "$peel" $outputs
+    has 'two outputs' output 'two outputs in one file'
+done
+"$peel" diff a.exr a.exr --json mine.json >output
+chmod 600 mine.json
+"$peel" diff a.exr a.exr --json mine.json >output
+expect 'rights stay' test "$(stat -c %a mine.json)" = 600
+for list in 'hard --list --json a.json' 'hard fan --export hard --report hard' \
+    'diagnose --list --json a.json' 'blend vectors --list -o a.csv' \
+    'blend check log.txt --seed 4'; do
+    # shellcheck disable=SC2086 # a list of words
+    exits 4 'what would be left out' "$peel" $list
+done
+
 exits 0 'glb' "$peel" scenes chain -o chain.glb
 exits 0 'compare glb' "$peel" compare chain.glb --size 64x36
 exits 2 'a tolerance that nothing meets' "$peel" compare chain.gltf --size 64x36 --tolerance 0

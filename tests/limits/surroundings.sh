@@ -105,6 +105,12 @@ unprivileged() {
         'blend vectors --set random --count 3 -o ../closed/a.csv'; do
         refuses 'a folder that may not be written' '../closed/a.*Permission denied' $as ../program $output
     done
+    echo x >there.csv
+    cp there.csv there.gltf
+    chmod 444 there.*
+    for output in 'blend vectors --count 1 -o there.csv' 'scenes tutorial -o there.gltf'; do
+        refuses 'a file that may not be written' 'there.*Permission denied' $as ../program $output
+    done
     for output in 'hard fan --ci --report ../closed' \
         'compare tutorial --size 8x8 --json ../closed/there.json'; do
         exits 4 'found before the work' timeout 20 $as ../program $output

@@ -49,6 +49,31 @@ START_TEST(palettes)
 }
 END_TEST
 
+/* One colour that is transparent: a channel more. */
+START_TEST(color_key)
+{
+    static const struct {
+        int type;
+        uint8_t row[6], key[6], rgba[8];
+        int row_bytes, key_bytes;
+    } kinds[] = {
+        {PNG_RGB, {1, 2, 3, 4, 5, 6}, {0, 4, 0, 5, 0, 6}, {1, 2, 3, 255, 4, 5, 6, 0}, 6, 6},
+        {PNG_GREY, {7, 8}, {0, 7}, {7, 7, 7, 0, 8, 8, 8, 255}, 2, 2}};
+    for (int i = 0; i < 2; i++)
+        for (int keyed = 0; keyed < 2; keyed++) {
+            int stored = 0;
+            SmallPng png = png_begin(2, 1, 8, kinds[i].type);
+            if (keyed)
+                png_chunk(&png, "tRNS", kinds[i].key, (size_t)kinds[i].key_bytes);
+            png_end(&png, kinds[i].row, (size_t)kinds[i].row_bytes, 1);
+            if (keyed)
+                decodes(&png, FORMAT_RGBA8, kinds[i].rgba, 8);
+            ck_assert_int_eq(decode_channels(png.bytes, png.count, "x", &stored), RESULT_OK);
+            ck_assert_int_eq(stored, (kinds[i].type == PNG_RGB ? 3 : 1) + keyed);
+        }
+}
+END_TEST
+
 /* Black: not what memory had there. */
 START_TEST(index_behind_the_palette)
 {
@@ -327,6 +352,7 @@ int main(void)
     tcase_add_checked_fixture(test, scratch_make, scratch_remove);
     tcase_add_test(test, channels);
     tcase_add_test(test, palettes);
+    tcase_add_test(test, color_key);
     tcase_add_test(test, index_behind_the_palette);
     tcase_add_test(test, sixteen_bits);
     tcase_add_test(test, gamma_is_ignored);

@@ -148,6 +148,45 @@ START_TEST(escaped_buffer_names)
 }
 END_TEST
 
+/* A binary file's first buffer may be another than its BIN chunk. */
+START_TEST(binary_with_buffers_elsewhere)
+{
+    static const unsigned char unused[8] = {1, 2, 3};
+    char text[8192];
+    ck_assert_uint_lt(scratch_read(write_quad(quad, QUAD_MESH "," ONE_NODE), text, sizeof text),
+                      sizeof text - 1);
+    for (size_t chunk = 0; chunk <= sizeof unused; chunk += sizeof unused) {
+        Scene scene;
+        unsigned char *bytes;
+        size_t count;
+        const char *path = scratch_path("elsewhere.glb");
+        ck_assert_int_eq(gltf_file_assemble(text, unused, chunk, &bytes, &count), RESULT_OK);
+        ck_assert_int_eq(file_write(path, bytes, count), RESULT_OK);
+        load(path, &scene);
+        ck_assert_uint_eq(scene.meshes[0].vertex_count, 4);
+        ck_assert_mem_eq(scene.meshes[0].position, quad, 48);
+        ck_assert_str_eq(scene.name, "elsewhere");
+        scene_free(&scene);
+        free(bytes);
+    }
+}
+END_TEST
+
+/* The scene's name is the file's, made of UTF-8 alone. */
+START_TEST(name_of_other_bytes)
+{
+    Scene scene;
+    const char *path = scratch_path("a\xff\xc3\xa9.gltf");
+    char text[8192];
+    ck_assert_uint_lt(scratch_read(write_quad(quad, QUAD_MESH "," ONE_NODE), text, sizeof text),
+                      sizeof text - 1);
+    write_text(path, text);
+    load(path, &scene);
+    ck_assert_str_eq(scene.name, "a?\xc3\xa9");
+    scene_free(&scene);
+}
+END_TEST
+
 START_TEST(camera_field_is_vertical)
 {
     static const char *const aspects[] = {"", ",\"aspectRatio\":1.7777778", ",\"aspectRatio\":0.5",
@@ -422,6 +461,8 @@ int main(void)
     tcase_add_test(test, camera_field_is_vertical);
     tcase_add_test(test, defaults_where_the_file_says_nothing);
     tcase_add_test(test, material_factors);
+    tcase_add_test(test, binary_with_buffers_elsewhere);
+    tcase_add_test(test, name_of_other_bytes);
     tcase_add_test(test, strips_and_flat_normals);
     tcase_add_test(test, texture_coordinates_come_back);
     tcase_add_test(test, nodes_multiply_from_the_root);

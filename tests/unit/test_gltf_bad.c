@@ -24,6 +24,10 @@ START_TEST(bad_files)
     refused_file(text, RESULT_BAD_INPUT, "not glTF");
     write_text(text, "{\"asset\":{\"version\":\"1.0\"}}");
     refused_file(text, RESULT_UNSUPPORTED, "version 1.0");
+    write_text(text, "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}");
+    refused_file(text, RESULT_UNSUPPORTED, "version 2.1, expected 2.0");
+    write_text(text, "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":\"KHR_x\"}");
+    refused_file(text, RESULT_BAD_INPUT, "extensionsRequired: expected an array");
     write_text(text, "{\"meshes\":[]}");
     refused_file(text, RESULT_BAD_INPUT, "asset.version");
     write_text(text, "glTF\2");
