@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -39,23 +40,42 @@ int options_fail(Result result)
     return EXIT_BAD_INPUT;
 }
 
-/* Whether getopt would take word: no option at all, or one of the parser's or its children's. */
+/* The options of a parser and its children that a word may mean. */
+typedef struct Meant {
+    int whole, begun; /* whose name it is, and whose names begin so */
+    bool value;       /* one of them takes a value */
+} Meant;
+
+static void find_meant(const struct argp *argp, bool is_long, const char *name, size_t length,
+                       Meant *meant)
+{
+    const struct argp_option *option = argp->options; /* NULL: it has none */
+    for (; option && (option->name || option->doc); option++) {
+        bool begun = is_long ? option->name && strncmp(option->name, name, length) == 0
+                             : option->key == *name;
+        if (!begun)
+            continue;
+        bool whole = !is_long || strlen(option->name) == length;
+        meant->begun++;
+        meant->whole += whole;
+        meant->value |= option->arg != NULL;
+    }
+    for (const struct argp_child *child = argp->children; child && child->argp; child++)
+        find_meant(child->argp, is_long, name, length, meant);
+}
+
+/* Whether getopt would take word: no option at all, or one option of the parser. */
 static bool is_known(const struct argp *argp, unsigned flags, const char *word)
 {
+    Meant meant = {0};
     if (word[0] != '-' || word[1] == '\0')
         return true;
     const char *name = word + 1 + (word[1] == '-');
     bool is_long = word[1] == '-' || ((flags & ARGP_LONG_ONLY) && word[2]);
     size_t length = strcspn(name, "=");
-    const struct argp_option *option = argp->options; /* NULL: it has none */
-    for (; option && (option->name || option->doc); option++)
-        if (!is_long ? option->key == word[1]
-                     : option->name && strncmp(option->name, name, length) == 0)
-            return true;
-    for (const struct argp_child *child = argp->children; child && child->argp; child++)
-        if (is_known(child->argp, flags, word))
-            return true;
-    return false;
+    find_meant(argp, is_long, name, length, &meant);
+    bool one = meant.whole > 0 || meant.begun == 1;
+    return one && (!is_long || !name[length] || meant.value);
 }
 
 static struct {
@@ -144,7 +164,7 @@ error_t options_list(const char *name, const char *text,
 bool options_has_extension(const char *path, const char *extension)
 {
     size_t length = strlen(path), wanted = strlen(extension);
-    return length > wanted && strcmp(path + length - wanted, extension) == 0;
+    return length > wanted && strcasecmp(path + length - wanted, extension) == 0;
 }
 
 char *options_command_line(int argc, char **argv)

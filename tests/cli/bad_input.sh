@@ -171,6 +171,8 @@ refuse 'disk full' '/dev/full' compare tutorial --size 8x8 --json /dev/full
 refuse 'report below a file' 'text.gltf' compare tutorial --size 8x8 --report text.gltf/out
 refuse 'report of all methods below a file' 'text.gltf' compare tutorial --size 8x8 --method all \
     --report text.gltf/out
+refuse 'a value that is not taken' "'--deep=3' is no option" render tutorial --deep=3 -o a.exr
+refuse 'more than one option begins so' "'--s' is no option" render tutorial --s 8x8 -o a.exr
 refuse 'an option of a command without any' "'--nosuch' is no option" methods --nosuch
 refuse 'scene list: unknown' 'nosuch' scenes nosuch -o x.gltf
 refuse 'scene without output' '-o FILE' scenes tutorial
