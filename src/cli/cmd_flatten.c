@@ -89,7 +89,7 @@ static Result flatten(const FlattenOptions *options)
     if (result == RESULT_OK)
         result = options_has_extension(options->output, ".png")
                      ? write_display(&flat, options->output)
-                     : exr_write(&flat, options->output);
+                     : exr_write_at(&flat, deep.has_window ? &deep.window : NULL, options->output);
     if (result == RESULT_OK)
         printf("%s: %dx%d pixels, %llu samples, %u in one pixel\n", options->input, deep.width,
                deep.height, (unsigned long long)deep.sample_count, deep_most(&deep));

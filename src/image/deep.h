@@ -30,6 +30,8 @@ typedef struct DeepImage {
     DeepSample **pixels; /* the first of them, NULL where there is none; owned as they are */
     uint64_t sample_count;
     size_t bytes, max_bytes; /* allocated, and allowed */
+    bool has_window;         /* else from 0, 0, and the image itself */
+    ImageWindow window;
     bool has_camera;
     /* Column-major, for column vectors. Camera: looks down −z, y up. NDC: x and y from −1 to 1, z
      * as the depth range has it. */

@@ -11,13 +11,18 @@ struct ExrWriter {
     ExrOutput output;
     ExrPart *parts; /* names are the caller's, not used after opening */
     int part_count;
-    int next; /* part to be given */
+    int next;                  /* part to be given */
+    const ImageWindow *window; /* of a single part; NULL: all are from 0, 0 on */
 };
 
 /* The format wants one display window for all parts: their union. */
 static exr_attr_box2i_t display_window(const ExrWriter *writer)
 {
     exr_attr_box2i_t window = {.max = {.x = 0, .y = 0}};
+    const ImageWindow *given = writer->window;
+    if (given)
+        return (exr_attr_box2i_t){.min = {.x = given->left, .y = given->top},
+                                  .max = {.x = given->right, .y = given->bottom}};
     for (int i = 0; i < writer->part_count; i++) {
         const ExrPart *part = &writer->parts[i];
         window.max.x = part->width > window.max.x + 1 ? part->width - 1 : window.max.x;
@@ -26,15 +31,21 @@ static exr_attr_box2i_t display_window(const ExrWriter *writer)
     return window;
 }
 
-static exr_result_t add_part(exr_context_t context, const ExrPart *part,
+static exr_result_t add_part(exr_context_t context, const ExrPart *part, const ImageWindow *window,
                              const exr_attr_box2i_t *display)
 {
+    const exr_attr_box2i_t data = {
+        .min = {.x = window ? window->x : 0, .y = window ? window->y : 0},
+        .max = {.x = (window ? window->x : 0) + part->width - 1,
+                .y = (window ? window->y : 0) + part->height - 1}};
     ExrLayout layout = exr_layout(part->format);
     int index;
     exr_result_t code = exr_add_part(context, part->name, EXR_STORAGE_SCANLINE, &index);
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(context, index, part->width, part->height,
                                                    EXR_COMPRESSION_ZIP);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_set_data_window(context, index, &data);
     if (code == EXR_ERR_SUCCESS)
         code = exr_set_display_window(context, index, display);
     if (code == EXR_ERR_SUCCESS)
@@ -56,7 +67,7 @@ static Result start(const char *path, ExrWriter *writer)
     exr_attr_box2i_t display = display_window(writer);
     exr_result_t code = EXR_ERR_SUCCESS;
     for (int i = 0; i < writer->part_count && code == EXR_ERR_SUCCESS; i++)
-        code = add_part(writer->output.context, &writer->parts[i], &display);
+        code = add_part(writer->output.context, &writer->parts[i], writer->window, &display);
     if (code == EXR_ERR_SUCCESS)
         code = exr_write_header(writer->output.context);
     return code == EXR_ERR_SUCCESS ? RESULT_OK : exr_output_fail(&writer->output, code);
@@ -78,7 +89,8 @@ static Result check_parts(const char *path, const ExrPart *parts, int part_count
     return RESULT_OK;
 }
 
-Result exr_writer_open(const char *path, const ExrPart *parts, int part_count, ExrWriter **out)
+static Result open_writer(const char *path, const ExrPart *parts, int part_count,
+                          const ImageWindow *window, ExrWriter **out)
 {
     *out = NULL;
     Result result = check_parts(path, parts, part_count);
@@ -88,6 +100,7 @@ Result exr_writer_open(const char *path, const ExrPart *parts, int part_count, E
     if (!writer)
         return RESULT_NO_MEMORY;
     writer->part_count = part_count;
+    writer->window = window;
     writer->parts = memory_array((size_t)part_count, sizeof *parts);
     result = RESULT_NO_MEMORY;
     if (writer->parts) {
@@ -99,6 +112,11 @@ Result exr_writer_open(const char *path, const ExrPart *parts, int part_count, E
     else
         exr_writer_close(writer, false);
     return result;
+}
+
+Result exr_writer_open(const char *path, const ExrPart *parts, int part_count, ExrWriter **out)
+{
+    return open_writer(path, parts, part_count, NULL, out);
 }
 
 /* Unsigned integers of 1 or 2 bytes to the 4 that EXR has. */
@@ -133,7 +151,8 @@ static exr_result_t write_chunks(ExrWriter *writer, const Image *image, int chun
     exr_result_t code = EXR_ERR_SUCCESS;
     for (int y = 0; y < image->height && code == EXR_ERR_SUCCESS; y += chunk_rows) {
         exr_chunk_info_t chunk;
-        code = exr_write_scanline_chunk_info(writer->output.context, writer->next, y, &chunk);
+        code = exr_write_scanline_chunk_info(writer->output.context, writer->next,
+                                             y + (writer->window ? writer->window->y : 0), &chunk);
         if (code == EXR_ERR_SUCCESS)
             code =
                 y ? exr_encoding_update(writer->output.context, writer->next, &chunk, pipeline)
@@ -199,14 +218,19 @@ Result exr_writer_close(ExrWriter *writer, bool commit)
     return result == RESULT_OK ? closed : result;
 }
 
-Result exr_write(const Image *image, const char *path)
+Result exr_write_at(const Image *image, const ImageWindow *window, const char *path)
 {
     ExrPart part = {NULL, image->format, image->width, image->height};
     ExrWriter *writer;
-    Result result = exr_writer_open(path, &part, 1, &writer);
+    Result result = open_writer(path, &part, 1, window, &writer);
     if (result != RESULT_OK)
         return result;
     result = exr_writer_part(writer, image);
     Result closed = exr_writer_close(writer, result == RESULT_OK);
     return result == RESULT_OK ? closed : result;
+}
+
+Result exr_write(const Image *image, const char *path)
+{
+    return exr_write_at(image, NULL, path);
 }

@@ -28,6 +28,8 @@ Result exr_writer_close(ExrWriter *writer, bool commit);
 
 /* One image, one part. */
 Result exr_write(const Image *image, const char *path);
+/* The same where it is said to lie; NULL: from 0, 0 on. */
+Result exr_write_at(const Image *image, const ImageWindow *window, const char *path);
 
 /* Reads what the writer above makes, and any scanline file with channels R, G, B (A) or one
  * channel. part: index. The caller frees *out; name receives the part's name ("" if none). */

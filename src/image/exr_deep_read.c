@@ -135,7 +135,10 @@ static Result read_header(DeepReader *reader, size_t max_bytes)
         return result;
     exr_context_t context = reader->file.context;
     int32_t chunk_rows = 0;
+    exr_attr_box2i_t display;
     exr_result_t code = exr_get_data_window(context, reader->part, &reader->window);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_display_window(context, reader->part, &display);
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_compression(context, reader->part, &reader->compression);
     if (code == EXR_ERR_SUCCESS)
@@ -152,6 +155,10 @@ static Result read_header(DeepReader *reader, size_t max_bytes)
     if (!reader->counts)
         return RESULT_NO_MEMORY;
     result = deep_create((int)width, (int)height, max_bytes, reader->image);
+    reader->image->has_window = true;
+    reader->image->window =
+        (ImageWindow){reader->window.min.x, reader->window.min.y, display.min.x,
+                      display.min.y,        display.max.x,        display.max.y};
     if (result == RESULT_OK)
         read_camera(reader);
     return result;

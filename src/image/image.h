@@ -13,6 +13,13 @@ typedef struct Image {
     void *pixels; /* width·height·format_pixel_bytes(format) bytes, owned */
 } Image;
 
+/* Where the pixels of an EXR file lie: the first one, and the corners of the window that they are
+ * part of, the last ones included. */
+typedef struct ImageWindow {
+    int x, y;
+    int left, top, right, bottom;
+} ImageWindow;
+
 /* Zeroed pixels. The caller frees with image_free. */
 Result image_create(int width, int height, PixelFormat format, Image *out);
 void image_free(Image *image); /* leaves an empty image; NULL pixels are fine */

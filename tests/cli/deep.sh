@@ -59,6 +59,17 @@ for pattern in '96 x   54, 8 channel, deep float/float/float/float/float/uint/ui
     'Stats InfCount: 0 0 0 0 0 0 0 0'; do
     exits 0 "one.exr has '$pattern'" grep -q -- "$pattern" info
 done
+# Windows: a part of an image, and one that begins outside of what is shown.
+for crop in 40x20+8+9 30x20-5-7; do
+    exits 0 'a part of it' oiiotool one.exr --crop $crop -o part.exr
+    exits 0 'a part of it, oiiotool' oiiotool part.exr --flatten --ch R,G,B,A -d float -o theirs.exr
+    exits 0 'a part of it, flatten' "$peel" flatten part.exr -o ours.exr
+    exits 0 'the same windows and pixels' "$peel" diff --fail 1e-6 --warn 1e-6 ours.exr theirs.exr
+    oiiotool --info -v ours.exr | grep 'full/display\|origin' >windows
+    oiiotool --info -v theirs.exr | grep 'full/display\|origin' >theirs
+    exits 0 'the same windows' cmp windows theirs
+    exits 0 'windows' test -s windows
+done
 exits 0 'help' "$peel" flatten --help
 exits 0 'nothing else is left' test "$(find . -name '.peel-*')" = ''
 
