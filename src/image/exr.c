@@ -166,8 +166,7 @@ static exr_result_t write_chunks(ExrWriter *writer, const Image *image, int chun
         }
         point_at(pipeline, image->format, image->width, rows);
         if (y == 0)
-            code = exr_encoding_choose_default_routines(writer->output.context, writer->next,
-                                                        pipeline);
+            code = exr_choose_encoding(writer->output.context, writer->next, pipeline);
         if (code == EXR_ERR_SUCCESS)
             code = exr_encoding_run(writer->output.context, writer->next, pipeline);
     }

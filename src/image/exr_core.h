@@ -69,6 +69,11 @@ Result exr_output_open(const char *path, ExrOutput *out);
 Result exr_output_close(ExrOutput *output, bool commit);
 Result exr_output_fail(const ExrOutput *output, exr_result_t code);
 
+/* Sets up a pipeline that is at its first chunk, as exr_encoding_choose_default_routines does, and
+ * mends what OpenEXRCore 3.1.5 gets wrong: what is as long packed as it was must be stored as it
+ * was, or readers take one for the other. */
+exr_result_t exr_choose_encoding(exr_context_t context, int part, exr_encode_pipeline_t *pipeline);
+
 /* The format that the part says it holds (EXR_FORMAT_ATTRIBUTE), if its channels can hold it. */
 bool exr_declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,
                          PixelFormat *out);

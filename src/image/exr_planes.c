@@ -290,7 +290,7 @@ static exr_result_t write_rows(exr_context_t context, const Planes *planes,
                 (const uint8_t *)(planes->planes[index].bits + (size_t)y * (size_t)planes->width);
         }
         if (code == EXR_ERR_SUCCESS && y == 0)
-            code = exr_encoding_choose_default_routines(context, 0, pipeline);
+            code = exr_choose_encoding(context, 0, pipeline);
         if (code == EXR_ERR_SUCCESS)
             code = exr_encoding_run(context, 0, pipeline);
     }
