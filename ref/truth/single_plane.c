@@ -422,6 +422,13 @@ typedef struct FanWalk {
     SingleFan made; /* one that is not kept */
 } FanWalk;
 
+/* Only this: `made` is large, and seldom used. */
+static void begin_walk(FanWalk *walk)
+{
+    walk->choices = 0;
+    walk->count = 0;
+}
+
 /* NULL: that were all. After one with too many decisions there is none. */
 static const SingleFan *next_fan(const SingleTriangle *triangle, FanWalk *walk)
 {
@@ -443,8 +450,7 @@ void single_errors(const SingleTriangle *triangle, const SinglePixel *pixel, int
 {
     Errors errors = {.facing_certain = true};
     FanWalk walk;
-    walk.count = 0;
-    walk.choices = 0;
+    begin_walk(&walk);
     for (const SingleFan *fan; !errors.unknown && (fan = next_fan(triangle, &walk));)
         add_fan(triangle, pixel, fan, used, attribute, depth, &errors);
     bool known = errors.any && !errors.unknown;
@@ -477,8 +483,7 @@ SingleCover single_cover(const SingleTriangle *triangle, const SinglePixel *pixe
 {
     SingleCover cover = {.possible = false, .certain = true};
     FanWalk walk;
-    walk.count = 0;
-    walk.choices = 0;
+    begin_walk(&walk);
     const SingleFan *fan;
     while ((!cover.possible || cover.certain) && (fan = next_fan(triangle, &walk))) {
         SingleCorner corners[SINGLE_CORNERS_MAX];
@@ -496,8 +501,7 @@ SingleCover single_cover(const SingleTriangle *triangle, const SinglePixel *pixe
 bool single_may_overlap(const SingleTriangle *triangle, const SinglePixel *pixel)
 {
     FanWalk walk;
-    walk.count = 0;
-    walk.choices = 0;
+    begin_walk(&walk);
     for (const SingleFan *fan; (fan = next_fan(triangle, &walk));) {
         SingleCorner corners[SINGLE_CORNERS_MAX];
         int covering = 0;

@@ -34,6 +34,8 @@ static int utf8_length(const unsigned char *s)
                  {0xe1, 0xec, 0x80, 0xbf, 3}, {0xed, 0xed, 0x80, 0x9f, 3},
                  {0xee, 0xef, 0x80, 0xbf, 3}, {0xf0, 0xf0, 0x90, 0xbf, 4},
                  {0xf1, 0xf3, 0x80, 0xbf, 4}, {0xf4, 0xf4, 0x80, 0x8f, 4}};
+    if (*s < 0x80)
+        return 1;
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         if (*s < forms[i].low || *s > forms[i].high || s[1] < forms[i].least ||
             s[1] > forms[i].most)
@@ -49,7 +51,7 @@ static int utf8_length(const unsigned char *s)
 void text_make_utf8(char *string)
 {
     for (unsigned char *s = (unsigned char *)string; *s; s++) {
-        int length = *s < 0x80 ? 1 : utf8_length(s);
+        int length = utf8_length(s);
         if (length == 0)
             *s = '?';
         s += length > 1 ? length - 1 : 0;
@@ -60,7 +62,7 @@ void text_json_string(Text *text, const char *string)
 {
     text_print(text, "\"");
     for (const unsigned char *s = (const unsigned char *)string; *s; s++) {
-        int length = *s < 0x80 ? 1 : utf8_length(s);
+        int length = utf8_length(s);
         if (*s == '"' || *s == '\\')
             text_print(text, "\\%c", *s);
         else if (*s < 0x20)

@@ -45,13 +45,23 @@ typedef struct Place {
     double nearest, farthest; /* the depth; negated where the near plane is at 1 */
 } Place;
 
+static int column_of(const Possible *possible, size_t pixel)
+{
+    return (int)(pixel % (size_t)possible->view.width);
+}
+
+/* y up. */
+static int row_of(const Possible *possible, size_t pixel)
+{
+    return possible->view.height - 1 - (int)(pixel / (size_t)possible->view.width);
+}
+
 static Place place(const Possible *possible, const RenderDesc *desc, size_t pixel, uint32_t id)
 {
     BoundFragment found;
-    size_t width = (size_t)possible->view.width;
     bound_fragment(possible->triangles, desc ? desc : possible->desc,
-                   soup_triangle_of(&possible->soup, id), (int)(pixel % width),
-                   possible->view.height - 1 - (int)(pixel / width), &found);
+                   soup_triangle_of(&possible->soup, id), column_of(possible, pixel),
+                   row_of(possible, pixel), &found);
     const double *depth = desc ? found.stored : found.exact;
     if (possible->desc->depth_range == DEPTH_RANGE_REVERSED)
         return (Place){found.possible, found.certain, -depth[1], -depth[0]};
@@ -71,13 +81,12 @@ static Place background(const Possible *possible, const RenderDesc *desc, size_t
 const char *possible_repetitions(const Possible *possible, const RenderDesc *desc, size_t pixel,
                                  const StructurePixel *side)
 {
-    size_t width = (size_t)possible->view.width;
     for (int i = 1; i < side->count; i++) {
         if (structure_find(side->ids, i, side->ids[i]) < 0)
             continue;
-        if (!desc || !bound_may_repeat(
-                         possible->triangles, soup_triangle_of(&possible->soup, side->ids[i]),
-                         (int)(pixel % width), possible->view.height - 1 - (int)(pixel / width)))
+        uint32_t triangle = soup_triangle_of(&possible->soup, side->ids[i]);
+        if (!desc || !bound_may_repeat(possible->triangles, triangle, column_of(possible, pixel),
+                                       row_of(possible, pixel)))
             return "a layer twice, of a triangle whose pieces cannot overlap";
     }
     return NULL;
