@@ -1,4 +1,4 @@
-#include "ref/truth/single.h"
+#include "ref/truth/single_fan.h"
 
 #define U BOUNDED_SINGLE
 
@@ -21,86 +21,7 @@ typedef struct PlaneInput {
     double at;               /* |value| of the exact plane at the pixel, at most */
 } PlaneInput;
 
-/* ---- window coordinates ---------------------------------------------------------------------- */
-
-/* scale·(c/w) + translate: errors of the stored one from that of the exact point (dev), and from
- * that at value. least: |w| is not less in any of them. */
-static double window(const SingleViewport *viewport, const SingleVertex *v, int axis, double least,
-                     double *dev, double *all)
-{
-    double scale = viewport->scale[axis], translate = viewport->translate[axis];
-    double c = v->value[axis], value = scale * (c / v->value[3]) + translate;
-    double ratio = (fabs(c) + v->dev[axis] + v->spread[axis]) / least;
-    double error = (v->dev[axis] + ratio * v->dev[3]) / least + 2.001 * U * ratio + BOUNDED_TINY;
-    double moved = (v->spread[axis] + ratio * v->spread[3]) / least;
-    if (v->cut || !viewport->fused)
-        error += 1.001 * U * ratio + BOUNDED_TINY;
-    error *= scale;
-    moved = moved * scale + 8.0 * BOUNDED_DOUBLE * (scale * ratio + translate);
-    error += 1.001 * U * (fabs(value) + error + moved) + BOUNDED_TINY;
-    *dev = error * BOUNDED_SLACK;
-    *all = (error + moved) * BOUNDED_SLACK;
-    return value;
-}
-
-static bool set_corner(const SingleViewport *viewport, const SingleVertex *v, SingleCorner *out)
-{
-    double w = v->value[3], least = w - v->dev[3] - v->spread[3];
-    if (!(least > BOUNDED_TINY))
-        return false;
-    out->vertex = v;
-    out->x = window(viewport, v, 0, least, &out->dev_x, &out->all_x);
-    out->y = window(viewport, v, 1, least, &out->dev_y, &out->all_y);
-    out->z = window(viewport, v, 2, least, &out->dev_z, &out->all_z);
-    out->g = 1.0 / w;
-    out->dev_g = (v->dev[3] / least + 1.001 * U) / least + BOUNDED_TINY;
-    out->all_g = out->dev_g + (v->spread[3] / least + 4.0 * BOUNDED_DOUBLE) / least;
-    out->g_most = out->g + out->all_g;
-    return true;
-}
-
 /* ---- a piece --------------------------------------------------------------------------------- */
-
-/* How far a corner may be snapped, and more. */
-#define SNAP 0x1p-8
-
-/* The edge function of the pixel's centre opposite corner i, and its error when each coordinate is
- * off by its own and by `moved`. */
-static double edge(const SingleCorner c[3], int i, double moved, double *error)
-{
-    const SingleCorner *j = &c[(i + 1) % 3], *k = &c[(i + 2) % 3];
-    *error = bounded_product_error(j->x, j->all_x + moved, k->y, k->all_y + moved) +
-             bounded_product_error(k->x, k->all_x + moved, j->y, j->all_y + moved);
-    *error += 4.0 * BOUNDED_DOUBLE * (fabs(j->x * k->y) + fabs(k->x * j->y));
-    return j->x * k->y - k->x * j->y;
-}
-
-/* The doubled area; its error as above. */
-static double area(const SingleCorner c[3], double moved, double *error)
-{
-    double x1 = c[1].x - c[0].x, y1 = c[1].y - c[0].y, x2 = c[2].x - c[0].x, y2 = c[2].y - c[0].y;
-    double m2 = 2.0 * moved, tiny = 8.0 * BOUNDED_DOUBLE;
-    double e_x1 = c[1].all_x + c[0].all_x + m2 + tiny * (fabs(c[1].x) + fabs(c[0].x));
-    double e_y1 = c[1].all_y + c[0].all_y + m2 + tiny * (fabs(c[1].y) + fabs(c[0].y));
-    double e_x2 = c[2].all_x + c[0].all_x + m2 + tiny * (fabs(c[2].x) + fabs(c[0].x));
-    double e_y2 = c[2].all_y + c[0].all_y + m2 + tiny * (fabs(c[2].y) + fabs(c[0].y));
-    *error = bounded_product_error(x1, e_x1, y2, e_y2) + bounded_product_error(x2, e_x2, y1, e_y1);
-    return x1 * y2 - x2 * y1;
-}
-
-/* Whether the piece's snapped corners may cover the pixel. */
-static bool may_cover(const SingleCorner c[3])
-{
-    double area_error, whole = area(c, SNAP, &area_error);
-    if (!(fabs(whole) > area_error))
-        return true; /* either orientation */
-    for (int i = 0; i < 3; i++) {
-        double error, value = edge(c, i, SNAP, &error);
-        if ((whole < 0.0 ? -value : value) < -error)
-            return false;
-    }
-    return true;
-}
 
 /* |a − b| of the stored corners at most. */
 static double apart(double a, double a_error, double b, double b_error)
@@ -112,10 +33,10 @@ static double apart(double a, double a_error, double b, double b_error)
 static void set_piece(Piece *piece)
 {
     const SingleCorner *c = piece->corner;
-    double error, whole = area(c, 0.0, &error);
+    double error, whole = single_area(c, 0.0, &error);
     piece->area_least = fabs(whole) - error > 0.0 ? fabs(whole) - error : 0.0;
     for (int i = 0; i < 3; i++) {
-        double value = edge(c, i, 0.0, &error);
+        double value = single_edge(c, i, 0.0, &error);
         piece->weight[i] = (fabs(value) + error) / piece->area_least;
     }
     piece->dx01 = apart(c[0].x, c[0].all_x, c[1].x, c[1].all_x);
@@ -332,7 +253,7 @@ static void swap_corners(Piece *piece)
 static void add_piece(const SingleTriangle *triangle, const SinglePixel *pixel, Piece *piece,
                       int used, const Bounded *attribute, const Bounded *depth, Errors *errors)
 {
-    double error, whole = area(piece->corner, SNAP, &error);
+    double error, whole = single_area(piece->corner, SINGLE_SNAP, &error);
     bool certain = fabs(whole) > error;
     errors->facing_certain &= certain;
     if (!certain || whole < 0.0)
@@ -341,25 +262,6 @@ static void add_piece(const SingleTriangle *triangle, const SinglePixel *pixel, 
         swap_corners(piece);
         add_turned(triangle, pixel, piece, used, attribute, depth, errors);
     }
-}
-
-/* A polygon's corners around the pixel's centre. */
-static void set_corners(const SingleFan *fan, const SinglePixel *pixel,
-                        SingleCorner corners[SINGLE_CORNERS_MAX])
-{
-    for (int i = 0; i < fan->polygon.count; i++) {
-        corners[i] = fan->corner[i];
-        corners[i].x -= pixel->x + 0.5;
-        corners[i].y -= pixel->y + 0.5;
-    }
-}
-
-/* Number i, from 2, of a polygon's fan. */
-static Piece fan_piece(const SinglePolygon *polygon, const SingleCorner *corners, int i)
-{
-    if (polygon->whole)
-        return (Piece){.corner = {corners[0], corners[1], corners[2]}};
-    return (Piece){.corner = {corners[i - 1], corners[i], corners[0]}};
 }
 
 /* Adds what may cover the pixel of one polygon. */
@@ -371,78 +273,15 @@ static void add_fan(const SingleTriangle *triangle, const SinglePixel *pixel, co
         errors->unknown = true;
         return;
     }
-    set_corners(fan, pixel, corners);
+    single_set_corners(fan, pixel, corners);
     for (int i = 2; i < fan->polygon.count; i++) {
-        Piece piece = fan_piece(&fan->polygon, corners, i);
-        if (fan->polygon.count > 3 && !may_cover(piece.corner))
+        Piece piece;
+        single_piece(&fan->polygon, corners, i, piece.corner);
+        if (fan->polygon.count > 3 && !single_may_cover(piece.corner))
             continue;
         errors->any = true;
         add_piece(triangle, pixel, &piece, used, attribute, depth, errors);
     }
-}
-
-/* The next combination of decisions: the last that was not yet taken the other way. False: there is
- * none. */
-static bool next_choices(int decisions, unsigned *choices)
-{
-    while (decisions > 0 && *choices >> (decisions - 1) & 1)
-        *choices &= ~(1u << --decisions);
-    if (decisions > 0)
-        *choices |= 1u << (decisions - 1);
-    return decisions > 0;
-}
-
-static void make_fan(const SingleTriangle *triangle, unsigned choices, SingleFan *out)
-{
-    const SingleViewport *viewport = &triangle->viewport;
-    SinglePolygon *polygon = &out->polygon;
-    out->decisions = single_clip(viewport, triangle->vertex, choices, polygon);
-    out->known = out->decisions <= SINGLE_DECISIONS_MAX;
-    for (int i = 0; i < polygon->count && out->known; i++)
-        out->known = set_corner(viewport, &polygon->corner[i], &out->corner[i]);
-}
-
-void single_clipped(SingleTriangle *triangle)
-{
-    unsigned choices = 0;
-    int decisions;
-    triangle->kept = 0;
-    do {
-        SingleFan *fan = &triangle->fan[triangle->kept++];
-        make_fan(triangle, choices, fan);
-        decisions = fan->decisions;
-    } while (triangle->kept < SINGLE_KEPT && decisions <= SINGLE_DECISIONS_MAX &&
-             next_choices(decisions, &choices));
-}
-
-/* All polygons that clipping may leave, one after the other. */
-typedef struct FanWalk {
-    unsigned choices;
-    int count, decisions;
-    SingleFan made; /* one that is not kept */
-} FanWalk;
-
-/* Only this: `made` is large, and seldom used. */
-static void begin_walk(FanWalk *walk)
-{
-    walk->choices = 0;
-    walk->count = 0;
-}
-
-/* NULL: that were all. After one with too many decisions there is none. */
-static const SingleFan *next_fan(const SingleTriangle *triangle, FanWalk *walk)
-{
-    if (walk->count > 0 &&
-        (walk->decisions > SINGLE_DECISIONS_MAX || !next_choices(walk->decisions, &walk->choices)))
-        return NULL;
-    const SingleFan *fan = &walk->made;
-    if (walk->count < triangle->kept)
-        fan = &triangle->fan[walk->count];
-    else
-        make_fan(triangle, walk->choices, &walk->made);
-    walk->count++;
-    walk->decisions = fan->decisions;
-    return fan;
 }
 
 void single_errors(const SingleTriangle *triangle, const SinglePixel *pixel, int used,
@@ -450,8 +289,8 @@ void single_errors(const SingleTriangle *triangle, const SinglePixel *pixel, int
 {
     Errors errors = {.facing_certain = true};
     FanWalk walk;
-    begin_walk(&walk);
-    for (const SingleFan *fan; !errors.unknown && (fan = next_fan(triangle, &walk));)
+    single_begin_walk(&walk);
+    for (const SingleFan *fan; !errors.unknown && (fan = single_next_fan(triangle, &walk));)
         add_fan(triangle, pixel, fan, used, attribute, depth, &errors);
     bool known = errors.any && !errors.unknown;
     for (int k = SINGLE_POSITION; k < used; k++)
@@ -459,59 +298,4 @@ void single_errors(const SingleTriangle *triangle, const SinglePixel *pixel, int
     if (depth)
         depth->single = known ? errors.depth : (double)INFINITY;
     *facing_certain = errors.facing_certain && !errors.unknown;
-}
-
-/* ---- coverage -------------------------------------------------------------------------------- */
-
-/* Whether the centre lies within the convex polygon however its corners are snapped, and so in a
- * piece of its fan, whose inner edges two pieces share. */
-static bool must_cover(const SingleCorner *corners, int count)
-{
-    int side = 0;
-    for (int i = 0; i < count; i++) {
-        const SingleCorner ends[3] = {corners[i], corners[i], corners[(i + 1) % count]};
-        double error, value = edge(ends, 0, SNAP, &error);
-        int here = value > error ? 1 : value < -error ? -1 : 0;
-        if (here == 0 || (i > 0 && here != side))
-            return false;
-        side = here;
-    }
-    return count >= 3;
-}
-
-SingleCover single_cover(const SingleTriangle *triangle, const SinglePixel *pixel)
-{
-    SingleCover cover = {.possible = false, .certain = true};
-    FanWalk walk;
-    begin_walk(&walk);
-    const SingleFan *fan;
-    while ((!cover.possible || cover.certain) && (fan = next_fan(triangle, &walk))) {
-        SingleCorner corners[SINGLE_CORNERS_MAX];
-        const SinglePolygon *polygon = &fan->polygon;
-        if (!fan->known)
-            return (SingleCover){.possible = true};
-        set_corners(fan, pixel, corners);
-        for (int i = 2; i < polygon->count && !cover.possible; i++)
-            cover.possible = may_cover(fan_piece(polygon, corners, i).corner);
-        cover.certain = cover.certain && must_cover(corners, polygon->count);
-    }
-    return cover;
-}
-
-bool single_may_overlap(const SingleTriangle *triangle, const SinglePixel *pixel)
-{
-    FanWalk walk;
-    begin_walk(&walk);
-    for (const SingleFan *fan; (fan = next_fan(triangle, &walk));) {
-        SingleCorner corners[SINGLE_CORNERS_MAX];
-        int covering = 0;
-        if (!fan->known)
-            return true;
-        set_corners(fan, pixel, corners);
-        for (int i = 2; i < fan->polygon.count; i++)
-            covering += may_cover(fan_piece(&fan->polygon, corners, i).corner);
-        if (covering > 1)
-            return true;
-    }
-    return false;
 }

@@ -109,7 +109,7 @@ const char *possible_fragments(const Possible *possible, const RenderDesc *desc,
             return "a layer that must be behind the opaque triangle";
         front = here.nearest > front ? here.nearest : front;
     }
-    return possible_repetitions(possible, desc, pixel, side);
+    return NULL;
 }
 
 const char *possible_all(const Possible *possible, const RenderDesc *desc, size_t pixel,
@@ -128,7 +128,8 @@ const char *possible_all(const Possible *possible, const RenderDesc *desc, size_
         if (lost.certain && lost.farthest < behind.nearest)
             return "without a layer that must be there";
     }
-    return possible_fragments(possible, desc, pixel, side);
+    const char *what = possible_fragments(possible, desc, pixel, side);
+    return what ? what : possible_repetitions(possible, desc, pixel, side);
 }
 
 bool possible_tie(const Possible *possible, const RenderDesc *desc, size_t pixel,

@@ -26,7 +26,7 @@ const char *possible_fragments(const Possible *possible, const RenderDesc *desc,
 const char *possible_repetitions(const Possible *possible, const RenderDesc *desc, size_t pixel,
                                  const StructurePixel *side);
 
-/* The same of a side that loses nothing: that it has not what another has there. */
+/* Both of a side that loses nothing, and that it has not what another has there. */
 const char *possible_all(const Possible *possible, const RenderDesc *desc, size_t pixel,
                          const StructurePixel *side, const StructurePixel *other);
 
