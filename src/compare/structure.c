@@ -114,7 +114,7 @@ int structure_drop_repetitions(uint32_t *ids, int count)
 {
     int kept = 0;
     for (int i = 0; i < count; i++)
-        if (kept == 0 || ids[i] != ids[kept - 1])
+        if (structure_find(ids, kept, ids[i]) < 0)
             ids[kept++] = ids[i];
     return kept;
 }

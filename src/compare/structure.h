@@ -44,8 +44,9 @@ bool structure_same(const StructurePixel *a, const StructurePixel *b);
 /* Where id is among count ids; -1: it is not. */
 int structure_find(const uint32_t *ids, int count, uint32_t id);
 
-/* A layer that the raw peel test took again is no fragment more: drops repetitions from the ids and
- * returns how many are left. */
+/* A layer that the raw peel test took again is no fragment more, nor is a triangle's second piece,
+ * which rounding folded over its first: each id keeps its first place. Returns how many are left.
+ */
 int structure_drop_repetitions(uint32_t *ids, int count);
 
 /* Compares opaque.primitive and peel.K.primitive, K = 0, 1, …, of two stores of one size.

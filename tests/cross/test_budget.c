@@ -192,6 +192,23 @@ START_TEST(test_folded)
 }
 END_TEST
 
+/* Such a triangle (1) whose second piece is behind the last pass, with a layer between both. */
+START_TEST(test_folded_behind_limit)
+{
+    uint32_t seen[] = {0, 1}, exact[] = {0, 1, 2}, single[] = {0, 1, 2, 1};
+    uint32_t depths[] = {100, 200, 300, 400};
+    const RenderDesc desc = {.method = METHOD_PEEL_ID, .passes = 2};
+    StructurePixel ref = {.ids = seen, .count = 2};
+    const StructurePixel truth = {.ids = exact, .count = 3},
+                         best = {.ids = single, .depths = depths, .count = 4};
+    ck_assert_int_eq(class_of_fragments(&desc, &ref, &truth, &best, &best), CLASS_LOST_LIMIT);
+    /* What is in front of a layer that it has is not behind its last pass. */
+    seen[1] = 2;
+    ref.count = 2;
+    ck_assert_int_eq(class_of_fragments(&desc, &ref, &truth, &best, &best), CLASS_UNEXPLAINED);
+}
+END_TEST
+
 /* A layer whose depth becomes that of the opaque surface: no method has it. */
 START_TEST(test_depth_of_opaque)
 {
@@ -311,6 +328,7 @@ int main(void)
     tcase_add_test(tcase, test_depth);
     tcase_add_test(tcase, test_repeated);
     tcase_add_test(tcase, test_folded);
+    tcase_add_test(tcase, test_folded_behind_limit);
     tcase_add_loop_test(tcase, test_depth_of_opaque, 0, 3);
     tcase_add_test(tcase, test_clamp);
     tcase_add_test(tcase, test_seed);

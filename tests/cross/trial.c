@@ -132,6 +132,8 @@ static const char *impossible_layers(const Truthful *study, size_t pixel, PixelC
     bool behind = study->desc->passes > 0 || study->desc->peel_test == PEEL_TEST_RAW;
     for (int i = stored->count; class == CLASS_LOST_TIE && i-- > 0 && !what;) {
         bool there = structure_find(ref->ids, ref->count, stored->ids[i]) >= 0;
+        if (structure_find(stored->ids, i, stored->ids[i]) >= 0)
+            continue; /* its first place counts */
         behind = behind && !there;
         if (!there && !behind &&
             !possible_tie(study->possible, study->desc, pixel, stored, stored->ids[i]))

@@ -132,6 +132,16 @@ START_TEST(test_repeated)
 }
 END_TEST
 
+/* Rounding can fold a triangle, whose other piece lies behind another layer: no order is wrong. */
+START_TEST(test_folded)
+{
+    fill();
+    set(&a, 5, 0, (const uint32_t[LAYERS]){10, 11, 12, 11, 13});
+    check_counts(compare(), 0, 0, 0, 0);
+    check_same_but(5, 0);
+}
+END_TEST
+
 START_TEST(test_opaque_flip)
 {
     fill();
@@ -170,6 +180,7 @@ int main(void)
     tcase_add_test(tcase, test_each_difference);
     tcase_add_test(tcase, test_gaps);
     tcase_add_test(tcase, test_repeated);
+    tcase_add_test(tcase, test_folded);
     tcase_add_test(tcase, test_opaque_flip);
     tcase_add_test(tcase, test_empty_store);
     suite_add_tcase(suite, tcase);
