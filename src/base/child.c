@@ -121,7 +121,8 @@ Result child_limit(int pipe, const ChildLimits *limits)
  * for what ends a child at its limit or without its parent. No core file is left. */
 static void reset_signals(void)
 {
-    static const int numbers[] = {SIGXCPU, SIGPIPE, SIGABRT, SIGINT, SIGTERM, SIGHUP};
+    static const int numbers[] = {SIGXCPU, SIGPIPE, SIGABRT, SIGINT,  SIGTERM, SIGHUP,
+                                  SIGQUIT, SIGALRM, SIGUSR1, SIGUSR2, SIGPWR};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         struct sigaction now;
         if (i < 2 || (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN))

@@ -67,18 +67,19 @@ static int create_temporary(const char *path, char **temporary)
     char *name = malloc(size);
     if (!name)
         return -1;
-    int descriptor = -1;
-    errno = EEXIST;
-    for (int attempt = 0; descriptor < 0 && errno == EEXIST && attempt < 100; attempt++) {
+    int descriptor = -1, error = EEXIST;
+    for (int attempt = 0; descriptor < 0 && error == EEXIST && attempt < 100; attempt++) {
         snprintf(name, size, "%.*s.peel-%ld-%d.tmp", (int)folder, path, (long)getpid(), attempt);
+        remember(name); /* before it is there: a signal may come at once */
         descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        error = errno;
+        if (descriptor < 0)
+            forget(name);
     }
     if (descriptor >= 0) {
         *temporary = name;
-        remember(name);
         return descriptor;
     }
-    int error = errno;
     free(name);
     errno = error;
     return -1;

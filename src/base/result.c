@@ -39,18 +39,38 @@ static void make_one_line(char *text)
             *c = ' ';
         else if ((unsigned char)*c < ' ' || *c == 0x7f)
             *c = '?';
+        else if (c[0] == '\xc2' && (unsigned char)c[1] >= 0x80 && (unsigned char)c[1] < 0xa0)
+            c[0] = c[1] = '?'; /* U+0080 to U+009F */
+}
+
+/* Of a line that is too long the middle is left out: its end says why. Whole characters of UTF-8.
+ */
+static void shorten(const char *whole, char out[sizeof message])
+{
+    static const char gap[] = " ... ";
+    size_t length = strlen(whole), head = length, tail = 0;
+    if (length >= sizeof message) {
+        head = sizeof message / 2;
+        tail = sizeof message - head - sizeof gap;
+        while (head > 0 && ((unsigned char)whole[head] & 0xc0) == 0x80)
+            head--;
+        while (tail > 0 && ((unsigned char)whole[length - tail] & 0xc0) == 0x80)
+            tail--;
+    }
+    snprintf(out, sizeof message, "%.*s%s%s", (int)head, whole, tail ? gap : "",
+             whole + length - tail);
 }
 
 #undef result_fail
 Result result_fail(Result code, const char *format, ...)
 {
-    char text[sizeof message]; /* the arguments may hold the previous message */
+    char text[RESULT_LINE]; /* the arguments may hold the previous message */
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     make_one_line(text);
-    memcpy(message, text, sizeof message);
+    shorten(text, message);
     return code;
 }
 
@@ -74,7 +94,7 @@ void result_warn(const char *format, ...)
 {
     if (!warnings)
         return;
-    char text[1024];
+    char text[RESULT_LINE];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);

@@ -17,9 +17,14 @@ typedef enum Result {
 /* Never NULL; a static string. */
 const char *result_text(Result result);
 
+/* Room for a message before it is made one line: a path may have 4,095 bytes. */
+enum {
+    RESULT_LINE = 8192
+};
+
 /* Records a one-line message (what, where, what was expected; no final full stop) for the calling
  * thread and returns code, so that callers write `return result_fail(RESULT_IO, "%s: ...", path)`.
- */
+ * Of more than 1,023 bytes the middle is left out. */
 Result result_fail(Result code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Static analyzers see one file at a time: to them, that code is what is returned is said here. */

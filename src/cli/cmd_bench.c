@@ -176,7 +176,7 @@ static error_t add_scene(const char *text, BenchCommand *command)
 {
     error_t error = check_room("scenes", command->scene_count);
     if (error == 0)
-        command->scenes[command->scene_count++] = text;
+        command->scenes[command->scene_count++] = options_input(text);
     return error;
 }
 

@@ -184,7 +184,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_ARG:
         if (command->path)
             return options_error("'%s': check takes one FILE", argument);
-        command->path = argument;
+        command->path = options_input(argument);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

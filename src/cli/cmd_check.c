@@ -77,7 +77,7 @@ static error_t parse_argument(char *argument, CheckCommand *command)
     if (command->theirs)
         return options_error("'%s': expected one image or trace, already given as '%s'", argument,
                              command->theirs);
-    command->theirs = argument;
+    command->theirs = options_input(argument);
     return 0;
 }
 

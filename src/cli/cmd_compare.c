@@ -138,7 +138,8 @@ static Result compare_methods(const CompareCommand *command, const Scene *scene,
     static Threeway reports[METHOD_COUNT];
     size_t count = 0;
     if (command->budget)
-        return result_fail(RESULT_BAD_INPUT, "--budget: expected a single --method");
+        return result_fail(RESULT_BAD_INPUT, "%s: expected a single --method",
+                           command->classes ? "--classes" : "--budget");
     Result result = options_check_outputs(command->json, NULL, command->report);
     if (result == RESULT_OK)
         result = options_check_fma(&command->render);

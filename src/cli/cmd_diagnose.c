@@ -48,7 +48,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_ARG:
         if (!command->render.scene_path || command->image)
             return ARGP_ERR_UNKNOWN; /* the first is the scene; a third is one too many */
-        command->image = argument;
+        command->image = options_input(argument);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -147,7 +147,7 @@ static error_t parse_file(const char *text, DiffCommand *command)
     if (command->paths[1])
         return options_error("'%s': expected two files, already given as '%s' and '%s'", text,
                              command->paths[0], command->paths[1]);
-    command->paths[at] = text;
+    command->paths[at] = options_input(text);
     return 0;
 }
 

@@ -39,7 +39,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         if (options->input)
             return options_error("'%s': expected one file, already given as '%s'", argument,
                                  options->input);
-        options->input = argument;
+        options->input = options_input(argument);
         return 0;
     case ARGP_KEY_SUCCESS:
         if (!options->input)

@@ -78,10 +78,11 @@ static void on_signal(int number)
     raise(number); /* SA_RESETHAND: ends the program as the signal does */
 }
 
-/* SIGABRT: libraries that find no memory call abort(). */
+/* SIGABRT: libraries that find no memory call abort(). SIGXCPU: a soft limit of processor time. */
 static void handle_signals(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGABRT};
+    static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGABRT, SIGQUIT,
+                                  SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2, SIGPWR};
     signal(SIGXFSZ, SIG_IGN); /* a file that grows too large is a failed write */
     struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESETHAND | SA_NODEFER};
     sigemptyset(&action.sa_mask);
@@ -146,6 +147,9 @@ int main(int argc, char **argv)
 {
     open_standard_streams();
     handle_signals();
+    /* argp's own: the layout of help, by which it may not end, and options only in front. */
+    unsetenv("ARGP_HELP_FMT");
+    unsetenv("POSIXLY_CORRECT");
     mp_set_memory_functions(exact_allocate, exact_reallocate, NULL);
     result_warnings_enable(true);
     int code = run(argc, argv);

@@ -23,7 +23,7 @@ static bool reported; /* a parser has printed its line */
 
 error_t options_error(const char *format, ...)
 {
-    char text[1024];
+    char text[RESULT_LINE];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
@@ -89,9 +89,24 @@ void options_describe(OptionsVisit visit, void *context)
     description.context = context;
 }
 
+/* Of the command line that was parsed last: more are not looked at. */
+enum {
+    INPUTS_MAX = 64
+};
+static const char *inputs[INPUTS_MAX];
+static int input_count;
+
+const char *options_input(const char *path)
+{
+    if (input_count < INPUTS_MAX)
+        inputs[input_count++] = path;
+    return path;
+}
+
 static int parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *input)
 {
     reported = false;
+    input_count = 0;
     if (description.visit) {
         description.visit(description.context, argp, flags & ARGP_LONG_ONLY);
         return OPTIONS_HELPED;
@@ -298,26 +313,6 @@ bool options_is_long(const char *word, const char *name, bool *value_follows)
     return length > 0 && strncmp(word + 2, name, length) == 0;
 }
 
-Result options_check_output(const char *path)
-{
-    struct stat status;
-    FileWriter writer;
-    int error = 0;
-    if (!path)
-        return RESULT_OK;
-    bool exists = stat(path, &status) == 0;
-    if (exists && S_ISDIR(status.st_mode))
-        error = EISDIR;
-    else if (exists && access(path, W_OK) != 0)
-        error = errno;
-    if (error)
-        return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
-    if (exists && !S_ISREG(status.st_mode))
-        return RESULT_OK; /* opening it may wait, or end what reads it */
-    Result result = file_writer_open(path, &writer);
-    return result == RESULT_OK ? file_writer_close(&writer, false) : result;
-}
-
 /* The path of a file, that it has or will have, without links. The caller frees; NULL: none. */
 static char *place_of(const char *path)
 {
@@ -346,6 +341,30 @@ static bool same_place(const char *a, const char *b)
     free(places[0]);
     free(places[1]);
     return same;
+}
+
+Result options_check_output(const char *path)
+{
+    struct stat status;
+    FileWriter writer;
+    int error = 0;
+    if (!path)
+        return RESULT_OK;
+    for (int i = 0; i < input_count; i++)
+        if (access(inputs[i], F_OK) == 0 && same_place(path, inputs[i])) /* not a scene's name */
+            return result_fail(RESULT_BAD_INPUT,
+                               "%s: an input, expected another name for the output", path);
+    bool exists = stat(path, &status) == 0;
+    if (exists && S_ISDIR(status.st_mode))
+        error = EISDIR;
+    else if (exists && access(path, W_OK) != 0)
+        error = errno;
+    if (error)
+        return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
+    if (exists && !S_ISREG(status.st_mode))
+        return RESULT_OK; /* opening it may wait, or end what reads it */
+    Result result = file_writer_open(path, &writer);
+    return result == RESULT_OK ? file_writer_close(&writer, false) : result;
 }
 
 Result options_check_outputs(const char *first, const char *second, const char *report)

@@ -108,6 +108,10 @@ Result options_check_fma(const RenderOptions *options);
  * it may be abbreviated. */
 bool options_is_long(const char *word, const char *name, bool *value_follows);
 
+/* A file that the command reads, which none of its outputs may be: call it when path, which it
+ * returns, is parsed. */
+const char *options_input(const char *path);
+
 /* Whether a file can be made or replaced at path (NULL is fine): found out before the work. */
 Result options_check_output(const char *path);
 

@@ -428,7 +428,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
         if (options->scene_path)
             return options_error("'%s': expected one scene, already given as '%s'", argument,
                                  options->scene_path);
-        options->scene_path = argument;
+        options->scene_path = options_input(argument);
         return 0;
     case ARGP_KEY_SUCCESS:
         if (!options->scene_path && !options->scene_optional)

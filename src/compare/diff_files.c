@@ -255,6 +255,29 @@ static Result compare_parts(Source sources[DIFF_SIDES], int a, int b,
 
 /* ---- files ---- */
 
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Parts are told apart by their names. Source: OpenEXR, "Multi-Part Files": names are unique. */
+static Result check_names(const Source *source)
+{
+    int count = part_count(source);
+    const char **names = memory_array((size_t)count, sizeof *names);
+    Result result = names ? RESULT_OK : RESULT_NO_MEMORY;
+    for (int i = 0; names && i < count; i++)
+        names[i] = part_name(source, i);
+    if (names)
+        qsort(names, (size_t)count, sizeof *names, by_name);
+    for (int i = 1; i < count && result == RESULT_OK; i++)
+        if (*names[i] && strcmp(names[i], names[i - 1]) == 0)
+            result = result_fail(RESULT_BAD_INPUT, "%s: two parts are called %s, expected one",
+                                 source->path, names[i]);
+    free(names);
+    return result;
+}
+
 /* The other file's part of the same name; of the same place where one of these has no name; −1. */
 static int find_part(const Source *other, const char *name, int part)
 {
@@ -293,6 +316,8 @@ Result diff_files(const char *a, const char *b, const DiffFilesOptions *options,
     Result result = open_source(a, options->diff.max_bytes, &sources[0]);
     if (result == RESULT_OK)
         result = open_source(b, options->diff.max_bytes, &sources[1]);
+    for (int side = 0; side < DIFF_SIDES && result == RESULT_OK; side++)
+        result = check_names(&sources[side]);
     if (result == RESULT_OK) {
         out->trace = is_trace(&sources[0]) && is_trace(&sources[1]);
         out->all = options->all || out->trace;

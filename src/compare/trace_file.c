@@ -70,13 +70,22 @@ Result trace_file_is(const char *path, bool *is)
     return result;
 }
 
-static Result put(void *sink, const char *name, const Image *image)
+typedef struct Reader {
+    const char *path;
+    TraceStore *store;
+} Reader;
+
+static Result put(void *context, const char *name, const Image *image)
 {
-    return trace_put(sink, name, trace_name_step(name), image->format, image->width, image->height,
-                     image->pixels);
+    const Reader *reader = context;
+    if (store_find(reader->store, name) >= 0)
+        return result_fail(RESULT_BAD_INPUT, "%s: buffer %s comes twice, expected once",
+                           reader->path, name);
+    return trace_put(store_sink(reader->store), name, trace_name_step(name), image->format,
+                     image->width, image->height, image->pixels);
 }
 
-static Result read_exr(const char *path, TraceSink *sink)
+static Result read_exr(const char *path, Reader *reader)
 {
     int parts;
     Result result = exr_part_count(path, &parts);
@@ -87,17 +96,18 @@ static Result read_exr(const char *path, TraceSink *sink)
         if (result != RESULT_OK)
             break;
         if (is_buffer_name(name) && strlen(name) < DUMP_NAME)
-            result = put(sink, name, &image);
+            result = put(reader, name, &image);
         image_free(&image);
     }
     return result;
 }
 
-Result trace_file_read(const char *path, TraceSink *sink)
+Result trace_file_read(const char *path, TraceStore *store)
 {
+    Reader reader = {path, store};
     bool dump;
     Result result = is_dump(path, &dump);
     if (result != RESULT_OK)
         return result;
-    return dump ? dump_read(path, put, sink) : read_exr(path, sink);
+    return dump ? dump_read(path, put, &reader) : read_exr(path, &reader);
 }

@@ -2,14 +2,15 @@
 #ifndef PEEL_COMPARE_TRACE_FILE_H
 #define PEEL_COMPARE_TRACE_FILE_H
 
-#include "frame/trace.h"
+#include "compare/store.h"
 
 /* Whether the file at path holds buffers under the names of frame/trace.h. A file that is neither
  * EXR nor a dump holds none; IO or BAD_INPUT when it cannot be read. */
 Result trace_file_is(const char *path, bool *is);
 
-/* Gives every buffer to the sink, whole, in the file's order. */
-Result trace_file_read(const char *path, TraceSink *sink);
+/* Puts every buffer into store, which is empty, in the file's order. BAD_INPUT where one comes
+ * twice. */
+Result trace_file_read(const char *path, TraceStore *store);
 
 /* The peel K of "peel.K.what", −1 of any other name. */
 int trace_name_peel(const char *name);

@@ -1,4 +1,4 @@
-/* PNG and JPEG files in memory to pixels, through stb_image and libjpeg. */
+/* PNG and JPEG files in memory to pixels, through libpng and libjpeg. */
 #ifndef PEEL_IMAGE_DECODE_H
 #define PEEL_IMAGE_DECODE_H
 
@@ -19,8 +19,8 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
 /* The pixels as stored: FORMAT_RGBA16 of a PNG with 16 bits, else FORMAT_RGBA8. Grey is repeated
  * in red, green and blue; alpha is 1 where the file has none. Colour profiles and gamma are
  * ignored, as glTF demands. The same bytes give the same pixels on every processor. The caller
- * frees *out with image_free. BAD_INPUT with the library's reason, also for a file that ends too early;
- * NO_MEMORY. */
+ * frees *out with image_free. BAD_INPUT with the library's reason, also for a file that ends too
+ * early; NO_MEMORY. */
 Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out);
 
 /* How many channels the file stores, of an image that was decoded: 1 grey, 2 grey and alpha, 3 RGB,

@@ -105,6 +105,8 @@ Result dump_read(const char *path, DumpTake take, void *context)
         image_free(&image);
         number++;
     }
+    if (result == RESULT_OK && ferror(file))
+        result = result_fail(RESULT_IO, "%s: cannot read: %s", path, strerror(errno));
     (void)fclose(file);
     if (result == RESULT_OK && number == 0)
         result = result_fail(RESULT_BAD_INPUT, "%s: empty, expected buffers", path);

@@ -23,6 +23,7 @@ typedef struct MemoryFile {
 
 typedef struct Document {
     const char *path;
+    const GltfJson *json;
     unsigned char *bytes;
     size_t count;
     bool out_of_memory; /* a file could not be opened for want of it */
@@ -83,22 +84,21 @@ static void close_file(struct aiFileIO *io, struct aiFile *file)
     free(file);
 }
 
-/* Assimp joins a buffer's uri to the document's folder without decoding it. */
-static Result read_buffer(const char *document, const char *joined, MemoryFile *out)
+/* The buffer that path, joined to the document's folder, is the number of. */
+static Result read_buffer(const Document *document, const char *path, MemoryFile *out)
 {
-    const char *slash = strrchr(document, '/');
-    size_t folder = slash ? (size_t)(slash - document) + 1 : 0;
-    const char *uri = strncmp(joined, document, folder) == 0 ? joined + folder : joined;
-    char *path = NULL;
-    Result result = gltf_file_beside(document, uri, &path);
-    if (result == RESULT_OK)
-        result = file_load(path, &out->owned, &out->count);
-    free(path);
+    const char *slash = strrchr(path, '/');
+    size_t index = strtoul(slash ? slash + 1 : path, NULL, 10);
+    const json_t *buffer = gltf_json_element(document->json, "buffers", index);
+    const char *uri = json_string_value(json_object_get(buffer, "uri"));
+    if (!uri)
+        return RESULT_BAD_INPUT;
+    Result result = gltf_file_uri(document->path, "buffer", index, uri, &out->owned, &out->count);
     out->bytes = out->owned;
     return result;
 }
 
-/* The reduced document under the file's own name; everything else is an external buffer. */
+/* The reduced document under the file's own name; everything else is a buffer. */
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
 {
     Document *document = (Document *)io->UserData;
@@ -110,7 +110,7 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     if (result == RESULT_OK && strcmp(path, document->path) == 0)
         *memory = (MemoryFile){.bytes = document->bytes, .count = document->count};
     else if (result == RESULT_OK)
-        result = read_buffer(document->path, path, memory);
+        result = read_buffer(document, path, memory);
     if (result != RESULT_OK) {
         document->out_of_memory |= result == RESULT_NO_MEMORY;
         free(file);
@@ -180,7 +180,7 @@ static bool is_gltf2(const struct aiScene *scene)
 
 Result gltf_assimp_import(const char *path, const GltfJson *json, const struct aiScene **out)
 {
-    Document document = {0};
+    Document document = {.json = json};
     *out = NULL;
     /* Assimp knows text by the name. */
     char *name = NULL;

@@ -18,31 +18,12 @@ void gltf_bytes_free(GltfBytes *bytes)
     bytes->buffers = NULL;
 }
 
-/* What a uri names, embedded or beside the document; what and index name it in messages. */
 static Result read_uri(const GltfBytes *bytes, const char *what, size_t index, const char *uri,
                        GltfSpan *out)
 {
-    struct stat info;
-    char *path = NULL;
-    Result result;
-    if (strncmp(uri, "data:", 5) == 0) {
-        result = gltf_file_from_data_uri(uri, &out->owned, &out->count);
-        if (result)
-            return result_fail(result, "%s: %s %zu: %s", bytes->path, what, index,
-                               result_message());
-    } else {
-        result = gltf_file_beside(bytes->path, uri, &path);
-        if (!result && stat(path, &info))
-            result = result_fail(RESULT_BAD_INPUT, "%s: %s %zu: no file %s beside it", bytes->path,
-                                 what, index, uri);
-        if (!result)
-            result = file_load(path, &out->owned, &out->count);
-        free(path);
-        if (result)
-            return result;
-    }
+    Result result = gltf_file_uri(bytes->path, what, index, uri, &out->owned, &out->count);
     out->bytes = out->owned;
-    return RESULT_OK;
+    return result;
 }
 
 static Result read_buffer(GltfBytes *bytes, size_t index, const GltfSpan **out)

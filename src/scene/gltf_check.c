@@ -52,14 +52,24 @@ static Result check_extensions(const GltfCheck *check)
 
 /* ---- buffers and accessors ------------------------------------------------------------------ */
 
-/* An external buffer is as long as it says: Assimp leaks the open file when it is not. */
-static Result check_external(const GltfCheck *check, size_t index, const json_t *buffer)
+/* An embedded buffer is as long as it says. */
+static Result check_embedded(const GltfCheck *check, size_t index, const char *uri, size_t expected)
 {
-    const char *uri = json_string_value(json_object_get(buffer, "uri"));
-    size_t expected = gltf_json_index(buffer, "byteLength", 0);
+    unsigned char *bytes = NULL;
+    size_t count = 0;
+    Result result = gltf_file_uri(check->path, "buffer", index, uri, &bytes, &count);
+    free(bytes);
+    if (!result && count < expected)
+        result = result_fail(RESULT_BAD_INPUT,
+                             "%s: buffer %zu: its data uri is truncated: %zu bytes, expected %zu",
+                             check->path, index, count, expected);
+    return result;
+}
+
+/* An external one: Assimp leaks the open file when it is not. */
+static Result check_external(const GltfCheck *check, size_t index, const char *uri, size_t expected)
+{
     struct stat info;
-    if (!uri || strncmp(uri, "data:", 5) == 0)
-        return RESULT_OK;
     char *path = NULL;
     Result result = gltf_file_beside(check->path, uri, &path);
     if (result)
@@ -76,22 +86,31 @@ static Result check_external(const GltfCheck *check, size_t index, const json_t 
     return RESULT_OK;
 }
 
+static Result check_buffer(const GltfCheck *check, size_t index, const json_t *buffer)
+{
+    const json_t *uri = json_object_get(buffer, "uri");
+    const char *text = json_string_value(uri);
+    size_t bytes = gltf_json_index(buffer, "byteLength", 0);
+    if (!gltf_required_index(buffer, "byteLength", SIZE_MAX))
+        return gltf_fail(check, "buffer", index, "a byteLength");
+    if (uri && !text)
+        return gltf_fail(check, "buffer", index, "a string as its uri");
+    if (!uri && (index != 0 || bytes > check->json->binary_count))
+        return gltf_fail(check, "buffer", index,
+                         "a uri, or a binary chunk as long as its byteLength");
+    if (!uri)
+        return RESULT_OK;
+    return strncmp(text, "data:", 5) == 0 ? check_embedded(check, index, text, bytes)
+                                          : check_external(check, index, text, bytes);
+}
+
 static Result check_views(const GltfCheck *check)
 {
     const json_t *element;
     size_t i;
     json_array_foreach(gltf_array(check, "buffers"), i, element)
     {
-        const json_t *uri = json_object_get(element, "uri");
-        if (!gltf_required_index(element, "byteLength", SIZE_MAX))
-            return gltf_fail(check, "buffer", i, "a byteLength");
-        if (uri && !json_is_string(uri))
-            return gltf_fail(check, "buffer", i, "a string as its uri");
-        if (!uri &&
-            (i != 0 || gltf_json_index(element, "byteLength", 0) > check->json->binary_count))
-            return gltf_fail(check, "buffer", i,
-                             "a uri, or a binary chunk as long as its byteLength");
-        Result result = check_external(check, i, element);
+        Result result = check_buffer(check, i, element);
         if (result)
             return result;
     }
@@ -239,7 +258,8 @@ static Result check_primitive(const GltfCheck *check, size_t mesh, const json_t 
     if (!gltf_valid_index(json_object_get(primitive, "material"), gltf_count(check, "materials")))
         return gltf_fail(check, "mesh", mesh, "materials that exist");
     char uv[UV_NAME_SIZE];
-    gltf_surface_uv_name(check->json, primitive, uv);
+    if (gltf_surface_uv_name(check->json, primitive, uv) && !json_object_get(attributes, uv))
+        gltf_note(check, NOTE_NO_UVS);
     note_colors(check, attributes);
     if (json_object_get(primitive, "targets"))
         gltf_note(check, NOTE_MORPHS);

@@ -1,6 +1,7 @@
 #include "scene/gltf_file.h"
 
 #include "base/base64.h"
+#include "base/file.h"
 #include "base/memory.h"
 
 #include <stdint.h>
@@ -8,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 /* Source: glTF 2.0, 4.4 (binary glTF layout). */
 #define GLB_MAGIC 0x46546c67u
@@ -146,4 +148,24 @@ Result gltf_file_from_data_uri(const char *uri, unsigned char **bytes, size_t *c
     }
     *bytes = out;
     return RESULT_OK;
+}
+
+Result gltf_file_uri(const char *path, const char *what, size_t index, const char *uri,
+                     unsigned char **bytes, size_t *count)
+{
+    struct stat info;
+    char *beside = NULL;
+    if (strncmp(uri, "data:", 5) == 0) {
+        Result result = gltf_file_from_data_uri(uri, bytes, count);
+        return result ? result_fail(result, "%s: %s %zu: %s", path, what, index, result_message())
+                      : RESULT_OK;
+    }
+    Result result = gltf_file_beside(path, uri, &beside);
+    if (!result && stat(beside, &info))
+        result = result_fail(RESULT_BAD_INPUT, "%s: %s %zu: no file %s beside it", path, what,
+                             index, uri);
+    if (!result)
+        result = file_load(beside, bytes, count);
+    free(beside);
+    return result;
 }

@@ -21,6 +21,12 @@ Result gltf_file_assemble(const char *text, const unsigned char *binary, size_t 
  * frees *bytes. BAD_INPUT with a message that names neither file nor place, NO_MEMORY. */
 Result gltf_file_from_data_uri(const char *uri, unsigned char **bytes, size_t *count);
 
+/* The bytes that a uri names, embedded or in a file beside the one at path; what ("buffer") and
+ * index name it in messages. The caller frees *bytes. As the two above; BAD_INPUT where there is no
+ * such file. */
+Result gltf_file_uri(const char *path, const char *what, size_t index, const char *uri,
+                     unsigned char **bytes, size_t *count);
+
 /* "data:TYPE;base64," and the bytes (RFC 4648), type being a media type such as "image/png"; the
  * caller frees it. NULL without memory. */
 char *gltf_file_data_uri(const char *type, const unsigned char *bytes, size_t count);

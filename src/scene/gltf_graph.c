@@ -86,8 +86,8 @@ static Result check_node(const GltfCheck *check, size_t index, const json_t *nod
 {
     const json_t *camera = json_object_get(node, "camera");
     const json_t *extensions = json_object_get(node, "extensions");
-    const json_t *light =
-        json_object_get(json_object_get(extensions, "KHR_lights_punctual"), "light");
+    const json_t *lit = json_object_get(extensions, "KHR_lights_punctual");
+    const json_t *light = json_object_get(lit, "light");
     Result result = check_placement(check, index, node);
     if (result)
         return result;
@@ -95,7 +95,7 @@ static Result check_node(const GltfCheck *check, size_t index, const json_t *nod
         return gltf_fail(check, "node", index, "a mesh that exists");
     if (!gltf_valid_index(camera, gltf_count(check, "cameras")))
         return gltf_fail(check, "node", index, "a camera that exists");
-    if (!gltf_valid_index(light, json_array_size(lights_of(check))))
+    if (lit && !gltf_required_index(lit, "light", json_array_size(lights_of(check))))
         return gltf_fail(check, "node", index, "a light that exists");
     if (json_object_get(node, "skin"))
         gltf_note(check, NOTE_SKINS);

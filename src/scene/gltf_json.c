@@ -100,6 +100,18 @@ static json_t *reduced_buffer(const json_t *buffer)
     return pick(buffer, keys);
 }
 
+/* A uri becomes its buffer's number. */
+static void number_buffers(const json_t *buffers)
+{
+    json_t *buffer;
+    size_t i;
+    json_array_foreach(buffers, i, buffer)
+    {
+        if (json_object_get(buffer, "uri"))
+            json_object_set_new(buffer, "uri", json_sprintf("%zu", i));
+    }
+}
+
 static json_t *reduced_view(const json_t *view)
 {
     static const char *const keys[] = {"buffer", "byteOffset", "byteLength", "byteStride", NULL};
@@ -136,6 +148,7 @@ json_t *gltf_json_reduced(const GltfJson *json)
     json_object_set_new(out, "scene", json_integer((json_int_t)json->scene));
     reduce_array(out, json->root, "scenes", reduced_scene);
     reduce_array(out, json->root, "buffers", reduced_buffer);
+    number_buffers(json_object_get(out, "buffers"));
     reduce_array(out, json->root, "bufferViews", reduced_view);
     reduce_array(out, json->root, "accessors", reduced_accessor);
     reduce_array(out, json->root, "meshes", reduced_mesh);
@@ -162,6 +175,7 @@ void gltf_json_warn(const GltfJson *json, const char *path)
         [NOTE_EMISSIVE] = "emissive colours",
         [NOTE_COLORS] = "vertex colours",
         [NOTE_UVS] = "metallic-roughness textures with other coordinates than the base colour's",
+        [NOTE_NO_UVS] = "textures of surfaces without their coordinates",
         [NOTE_POINTS_LINES] = "points and lines",
         [NOTE_MORPHS] = "morph targets",
         [NOTE_SKINS] = "skins",

@@ -49,6 +49,7 @@ typedef enum GltfNote {
     NOTE_EMISSIVE,
     NOTE_COLORS,
     NOTE_UVS,
+    NOTE_NO_UVS,
     NOTE_POINTS_LINES,
     NOTE_MORPHS,
     NOTE_SKINS,
@@ -71,9 +72,9 @@ typedef struct GltfJson {
 
 void gltf_json_free(GltfJson *json); /* what gltf_read made */
 
-/* A new document with nothing but triangles, materials' factors and nodes. The
- * indices of nodes, meshes and materials are kept. Without memory it may lack parts: see
- * base/json_memory.h. */
+/* A new document with nothing but triangles, materials' factors and nodes. The indices of nodes,
+ * meshes and materials are kept; the uri of a buffer is its index. Without memory it may lack
+ * parts: see base/json_memory.h. */
 json_t *gltf_json_reduced(const GltfJson *json);
 
 /* One warning that names everything noted, extensions included; silent when there is nothing. */

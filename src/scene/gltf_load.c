@@ -82,8 +82,6 @@ static uint32_t add_material(Loader *loader, const struct aiMaterial *from, cons
         material.alpha_mode = ALPHA_BLEND;
     else if (strcmp(mode.data, "MASK") == 0)
         material.alpha_mode = ALPHA_MASK;
-    else if (mode.length && strcmp(mode.data, "OPAQUE") != 0)
-        fail(loader, "a material with alphaMode OPAQUE, MASK or BLEND");
     material.base_color_texture = gltf_texture_add(
         &loader->textures, &loader->builder,
         gltf_surface_texture(loader->json, json, "baseColorTexture"), TEXTURE_SRGB);

@@ -28,9 +28,13 @@ static Result split_binary(const char *path, GltfJson *json, size_t count, const
     *length = word(file + 12);
     if (memcmp(file + 16, "JSON", 4) != 0)
         return result_fail(RESULT_BAD_INPUT, "%s: expected JSON as the first chunk", path);
-    if (*length > count - 20 || word(file + 8) > count)
+    if (word(file + 8) > count)
         return result_fail(RESULT_BAD_INPUT, "%s: truncated: %zu bytes, expected %u", path, count,
                            word(file + 8));
+    count = word(file + 8); /* what is behind is not of the file */
+    if (count < 20 || *length > count - 20)
+        return result_fail(RESULT_BAD_INPUT, "%s: JSON of %zu bytes in a file of %zu", path,
+                           *length, count);
     size_t next = 20 + (*length + 3) / 4 * 4;
     if (count < next + 8)
         return RESULT_OK;

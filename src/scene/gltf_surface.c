@@ -27,7 +27,7 @@ const json_t *gltf_surface_texture(const GltfJson *json, const json_t *material,
     return info;
 }
 
-void gltf_surface_uv_name(const GltfJson *json, const json_t *primitive, char out[UV_NAME_SIZE])
+bool gltf_surface_uv_name(const GltfJson *json, const json_t *primitive, char out[UV_NAME_SIZE])
 {
     const json_t *material =
         gltf_json_element(json, "materials", gltf_json_index(primitive, "material", SIZE_MAX));
@@ -35,6 +35,7 @@ void gltf_surface_uv_name(const GltfJson *json, const json_t *primitive, char ou
     if (!info)
         info = usable(json, material, METALLIC_ROUGHNESS);
     snprintf(out, UV_NAME_SIZE, "TEXCOORD_%zu", gltf_json_index(info, "texCoord", 0));
+    return info != NULL;
 }
 
 /* ---- checks --------------------------------------------------------------------------------- */
@@ -131,6 +132,13 @@ static Result check_info(const GltfCheck *check, size_t material, const char *ke
     return RESULT_OK;
 }
 
+/* mode: NULL where it is no string. */
+static bool is_alpha_mode(const char *mode)
+{
+    return mode &&
+           (strcmp(mode, "OPAQUE") == 0 || strcmp(mode, "MASK") == 0 || strcmp(mode, "BLEND") == 0);
+}
+
 /* Of what is modelled: a member of another type would count as absent. */
 static Result check_types(const GltfCheck *check, size_t index, const json_t *material)
 {
@@ -142,8 +150,8 @@ static Result check_types(const GltfCheck *check, size_t index, const json_t *ma
                                json_object_get(factors, "roughnessFactor")};
     if (factors && !json_is_object(factors))
         return gltf_fail(check, "material", index, "an object as its pbrMetallicRoughness");
-    if (mode && !json_is_string(mode))
-        return gltf_fail(check, "material", index, "a string as its alphaMode");
+    if (mode && !is_alpha_mode(json_string_value(mode)))
+        return gltf_fail(check, "material", index, "OPAQUE, MASK or BLEND as its alphaMode");
     if (sided && !json_is_boolean(sided))
         return gltf_fail(check, "material", index, "true or false as its doubleSided");
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)

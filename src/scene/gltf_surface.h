@@ -13,10 +13,10 @@ Result gltf_surface_check(const GltfCheck *check);
 const json_t *gltf_surface_texture(const GltfJson *json, const json_t *material, const char *key);
 
 /* The attribute that holds the texture coordinates of a primitive's material: "TEXCOORD_0" unless
- * its textures say otherwise. */
+ * its textures say otherwise. Whether it has any texture. */
 enum {
     UV_NAME_SIZE = 32
 };
-void gltf_surface_uv_name(const GltfJson *json, const json_t *primitive, char out[UV_NAME_SIZE]);
+bool gltf_surface_uv_name(const GltfJson *json, const json_t *primitive, char out[UV_NAME_SIZE]);
 
 #endif

@@ -7,6 +7,7 @@
 /* Coordinates further out would overflow single precision when squared. */
 #define COORDINATE_LIMIT 1e15
 #define INTENSITY_LIMIT  1e12f
+#define DEGREES_LIMIT    1e12
 /* What the attenuation's denominator must reach at the shortest distance the shading knows, 0.01,
  * so that 1/x times the greatest intensity stays finite. */
 #define ATTENUATION_MIN 1e-8
@@ -317,8 +318,11 @@ Result scene_validate_surroundings(const Scene *scene)
             return result_fail(RESULT_BAD_INPUT,
                                "scene: ambient light %g or background %g, expected 0 to 1e12",
                                (double)scene->ambient[i], (double)scene->background[i]);
-    if (!isfinite(scene->light_degrees_per_second))
-        return result_fail(RESULT_BAD_INPUT, "scene: the lights' rotation is not finite");
+    if (!(fabs(scene->light_degrees_per_second) <= DEGREES_LIMIT))
+        return result_fail(RESULT_BAD_INPUT,
+                           "scene: lights that turn by %g degrees per second, expected within "
+                           "1e12",
+                           scene->light_degrees_per_second);
     return scene->name ? RESULT_OK : result_fail(RESULT_BAD_INPUT, "scene: no name");
 }
 

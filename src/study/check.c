@@ -43,7 +43,7 @@ static Result load_image(const CheckRun *run, const char *path, GivenImage *out)
 
 static Result load_trace(CheckRun *run, const char *path)
 {
-    Result result = trace_file_read(path, store_sink(run->theirs));
+    Result result = trace_file_read(path, run->theirs);
     for (int i = 0; i < store_count(run->theirs) && result == RESULT_OK; i++) {
         const StoredBuffer *buffer = store_buffer(run->theirs, i);
         if (buffer->width != run->desc.width || buffer->height != run->desc.height)

@@ -70,6 +70,16 @@ for outputs in "render chain.gltf --size 9x9 -o a.exr --trace ./a.exr" \
     exits 4 'two outputs' "$peel" $outputs
     has 'two outputs' output 'two outputs in one file'
 done
+cp chain.gltf mine.gltf
+cp a.exr mine.exr
+for clash in 'compare mine.gltf --size 9x9 --json mine.gltf' 'diff a.exr mine.exr -o ./mine.exr' \
+    'check chain.gltf mine.exr --size 9x9 --json mine.exr'; do
+    # shellcheck disable=SC2086 # a list of words
+    exits 4 'an output that is an input' "$peel" $clash
+    has 'an output that is an input' output 'an input, expected another name'
+done
+cmp chain.gltf mine.gltf && cmp a.exr mine.exr
+expect 'inputs stay' test $? = 0
 "$peel" diff a.exr a.exr --json mine.json >output
 chmod 600 mine.json
 "$peel" diff a.exr a.exr --json mine.json >output
@@ -177,6 +187,10 @@ exits 0 'time' "$peel" compare teapot_hall.gltf --size 33x17 --time 3.5
 exits 0 'help' "$peel" --help
 exits 0 'help of a command' "$peel" compare --help
 has 'help of a command' output '--tolerance'
+cp output help.txt
+exits 0 'help, whatever its layout is to be' env ARGP_HELP_FMT=rmargin=1 timeout 20 "$peel" compare --help
+expect 'the same help' cmp help.txt output
+exits 0 'options behind arguments' env POSIXLY_CORRECT=1 "$peel" compare chain.gltf --size 1x1
 exits 0 'version' "$peel" --version
 
 engine=/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb

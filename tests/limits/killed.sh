@@ -11,7 +11,7 @@ all=${3-}
 export LC_ALL=C
 
 # A shell's background commands ignore SIGINT.
-heeding="env --default-signal=INT"
+heeding="env --default-signal=INT,QUIT"
 
 # wait_for COMMAND...: until it succeeds, half a minute at most.
 wait_for() {
@@ -87,6 +87,9 @@ writing TERM 143
 writing INT 130
 writing HUP 129
 writing ABRT 134
+writing QUIT 131
+writing XCPU 152
+writing USR1 138
 writing KILL 137
 terminal
 if [ -n "$all" ]; then

@@ -35,8 +35,23 @@ START_TEST(test_message)
     ck_assert_str_eq(result_message(), "scene: a b  c: line 3");
     static char huge[5000];
     memset(huge, 'x', sizeof huge - 1);
-    result_fail(RESULT_IO, "%s\n", huge);
-    ck_assert_uint_lt(strlen(result_message()), sizeof huge - 1);
+    result_fail(RESULT_IO, "%s: its end says why", huge);
+    ck_assert_uint_eq(strlen(result_message()), 1023);
+    ck_assert_ptr_nonnull(strstr(result_message(), "xxx ... xxx"));
+    ck_assert_ptr_nonnull(strstr(result_message(), "x: its end says why"));
+    for (size_t i = 0; i + 2 < sizeof huge; i += 2)
+        memcpy(huge + i, "\xc3\xa9", 2);
+    for (int i = 0; i < 2; i++) { /* whole characters, wherever it is cut */
+        result_fail(RESULT_IO, "%s%s", i ? "x" : "", huge);
+        ck_assert_uint_ge(strlen(result_message()), 1020);
+        for (const char *c = result_message() + i; *c && *c != ' '; c += 2)
+            ck_assert(c[0] == '\xc3' && c[1] == '\xa9');
+        ck_assert_mem_eq(strstr(result_message(), " ... ") + 5, "\xc3\xa9", 2);
+    }
+    result_fail(RESULT_IO, "%s",
+                "a\xc2\x9b"
+                "31m\xc2\xa0"); /* U+009B is a terminal's, too */
+    ck_assert_str_eq(result_message(), "a??31m\xc2\xa0");
     for (int i = RESULT_OK; i <= RESULT_INTERNAL + 1; i++)
         ck_assert_uint_gt(strlen(result_text((Result)i)), 0);
 }

@@ -142,16 +142,56 @@ START_TEST(broken_files)
 {
     static const uint8_t rgb[48] = {3, 1, 4, 1, 5, 9};
     SmallPng png = png_make(4, 4, 8, PNG_RGB, rgb, 12);
-    for (size_t count = 0; count < png.count - 12; count++) /* IEND says nothing */
+    for (size_t count = 0; count < png.count; count++)
         refused(png.bytes, count, "");
     refused((const unsigned char *)"GIF89a", 6, "expected PNG or JPEG data");
-    png = png_make(4, 2, 8, PNG_RGB, rgb, 12);
-    png.bytes[23] = 4; /* says four rows, has two */
-    refused(png.bytes, png.count, "cannot decode the PNG: Corrupt PNG");
+    png = png_begin(4, 4, 8, PNG_RGB);
+    png_end(&png, rgb, 12, 2);
+    refused(png.bytes, png.count, "cannot decode the PNG: Not enough image data");
     png = png_make(16385, 1, 8, PNG_GREY, rgb, 1);
     refused(png.bytes, png.count, "16385x1 pixels, expected 1 to 16384 a side");
     png = png_make(0, 1, 8, PNG_GREY, rgb, 1);
     refused(png.bytes, png.count, "cannot decode the PNG");
+}
+END_TEST
+
+/* Every chunk has a checksum: no bit can be another without being seen. */
+START_TEST(png_damaged)
+{
+    SmallPng png = png_begin(2, 1, 8, PNG_PALETTE);
+    png_chunk(&png, "PLTE", (uint8_t[]){10, 20, 30, 40, 50, 60}, 6);
+    png_chunk(&png, "tRNS", (uint8_t[]){128}, 1);
+    png_chunk(&png, "tEXt", "a\0b", 3);
+    png_end(&png, (uint8_t[]){1, 0}, 2, 1);
+    decodes(&png, FORMAT_RGBA8, (uint8_t[]){40, 50, 60, 255, 10, 20, 30, 128}, 8);
+    for (size_t bit = 0; bit < 8 * png.count; bit++) {
+        png.bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
+        refused(png.bytes, png.count, "");
+        png.bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
+    }
+}
+END_TEST
+
+/* Four by four pixels in Adam7's seven passes: pixel (0, 0), (4, 0), … of which six have any. */
+START_TEST(interlaced)
+{
+    static const uint8_t passes[] = {0,  0, 0, 2, 0, 8, 10, 0,  1,  3,  0, 9,
+                                     11, 0, 4, 5, 6, 7, 0,  12, 13, 14, 15};
+    SmallPng png = {.count = 8}, header = {.count = 0};
+    unsigned char packed[64];
+    uLongf size = sizeof packed;
+    memcpy(png.bytes, "\x89PNG\r\n\x1a\n", 8);
+    png_word(&header, 4);
+    png_word(&header, 4);
+    memcpy(header.bytes + 8, (uint8_t[]){8, PNG_GREY, 0, 0, 1}, 5);
+    png_chunk(&png, "IHDR", header.bytes, 13);
+    ck_assert_int_eq(compress(packed, &size, passes, sizeof passes), Z_OK);
+    png_chunk(&png, "IDAT", packed, size);
+    png_chunk(&png, "IEND", NULL, 0);
+    uint8_t expected[64];
+    for (int i = 0; i < 64; i++)
+        expected[i] = (uint8_t)(i % 4 == 3 ? 255 : i / 4);
+    decodes(&png, FORMAT_RGBA8, expected, sizeof expected);
 }
 END_TEST
 
@@ -358,6 +398,8 @@ int main(void)
     tcase_add_test(test, gamma_is_ignored);
     tcase_add_test(test, encoded_pixels_come_back);
     tcase_add_test(test, broken_files);
+    tcase_add_test(test, png_damaged);
+    tcase_add_test(test, interlaced);
     tcase_add_test(test, jpeg);
     tcase_add_test(test, jpeg_restarts);
     tcase_add_loop_test(test, jpeg_kinds, 0, 5);

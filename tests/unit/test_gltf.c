@@ -413,6 +413,26 @@ START_TEST(one_warning_names_everything)
 }
 END_TEST
 
+/* A picture of one pixel, on a surface that says where of which. */
+START_TEST(texture_without_coordinates)
+{
+    static const char form[] =
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":5},"
+        "\"indices\":2,\"material\":0}]}],\"textures\":[{\"source\":0}],\"images\":[{\"uri\":"
+        "\"data:;base64,"
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGM4AQAAygDJmcpdfgAA"
+        "AABJRU5ErkJggg==\"}],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{"
+        "\"index\":0,\"texCoord\":%d}}}]," ONE_NODE;
+    char members[1024];
+    for (int set = 0; set < 2; set++) {
+        snprintf(members, sizeof members, form, set);
+        const char *text = said(members);
+        ck_assert_msg(!strstr(text, "textures of surfaces without their coordinates") == (set == 0),
+                      "got \"%s\"", text);
+    }
+}
+END_TEST
+
 /* To the bit, written and read again; the node's scale does not stretch it. */
 START_TEST(light_ranges)
 {
@@ -469,6 +489,7 @@ int main(void)
     tcase_add_test(test, lights_and_extras);
     tcase_add_test(test, extras_of_any_type);
     tcase_add_test(test, one_warning_names_everything);
+    tcase_add_test(test, texture_without_coordinates);
     tcase_add_test(test, light_ranges);
     tcase_add_test(test, nothing_to_say);
     suite_add_tcase(suite, test);

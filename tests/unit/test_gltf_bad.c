@@ -81,6 +81,53 @@ START_TEST(truncated_files)
 }
 END_TEST
 
+START_TEST(embedded_buffers)
+{
+    static const char digits[] = "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA";
+    char uri[256];
+    Scene scene;
+    snprintf(uri, sizeof uri, "data:application/octet-stream;base64,%.32s", digits);
+    refused_file(write_external(uri), RESULT_BAD_INPUT,
+                 "buffer 0: its data uri is truncated: 24 bytes, expected 36");
+    snprintf(uri, sizeof uri, "data:application/octet-stream;base64,%.47s*", digits);
+    refused_file(write_external(uri), RESULT_BAD_INPUT, "buffer 0: expected base64 digits");
+    snprintf(uri, sizeof uri, "data:application/octet-stream,%s", digits);
+    refused_file(write_external(uri), RESULT_BAD_INPUT, "buffer 0: expected ;base64");
+    snprintf(uri, sizeof uri, "data:;a=b;base64,%.64s", digits); /* longer than it must be */
+    load(write_external(uri), &scene);
+    ck_assert_uint_eq(scene.meshes[0].triangle_count, 1);
+    scene_free(&scene);
+}
+END_TEST
+
+/* The header's length, then that of the JSON chunk, at words 2 and 3. */
+START_TEST(binary_lengths)
+{
+    static const struct {
+        size_t word;
+        uint32_t value;
+        const char *part;
+    } cases[] = {{2, 0x7fffffff, "truncated: "},
+                 {2, 0, "in a file of 0"},
+                 {2, 24, "in a file of 24"},
+                 {3, 0x7fffffff, "JSON of 2147483647 bytes in a file of "}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Scene scene;
+        unsigned char *bytes;
+        size_t count;
+        const char *path = scratch_path("lengths.glb");
+        ck_assert_int_eq(generate_find("crossing_planes")->generate(&scene), RESULT_OK);
+        ck_assert_int_eq(gltf_write(&scene, path), RESULT_OK);
+        scene_free(&scene);
+        ck_assert_int_eq(file_load(path, &bytes, &count), RESULT_OK);
+        memcpy(bytes + 4 * cases[i].word, &cases[i].value, 4);
+        ck_assert_int_eq(file_write(path, bytes, count), RESULT_OK);
+        free(bytes);
+        refused_file(path, RESULT_BAD_INPUT, cases[i].part);
+    }
+}
+END_TEST
+
 START_TEST(malformed_escapes)
 {
     static const char *const uris[] = {"a%2", "a%", "a%%20", "%g0.bin", "%0", "a%00.bin", "%-1"};
@@ -172,6 +219,12 @@ START_TEST(broken_nodes)
     refused(QUAD_MESH
             ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"extras\":{\"ambient\":1}}]",
             RESULT_BAD_INPUT, "three numbers");
+    refused(QUAD_MESH ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"extras\":{"
+                      "\"light_degrees_per_second\":1e13}}]",
+            RESULT_BAD_INPUT, "1e+13 degrees per second, expected within 1e12");
+    refused(QUAD_MESH ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"extensions\":{"
+                      "\"KHR_lights_punctual\":{}}}]",
+            RESULT_BAD_INPUT, "node 0: expected a light that exists");
     refused(QUAD_MESH "," ONE_NODE ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]",
             RESULT_UNSUPPORTED, "KHR_draco_mesh_compression");
 }
@@ -266,6 +319,8 @@ START_TEST(wrong_types)
         "\"pbrMetallicRoughness\":{\"baseColorFactor\":1}",
         "\"alphaCutoff\":\"0.5\"",
         "\"alphaMode\":1",
+        "\"alphaMode\":\"\"",
+        "\"alphaMode\":\"blend\"",
         "\"doubleSided\":1",
     };
     for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
@@ -288,6 +343,8 @@ int main(void)
     tcase_add_test(test, bad_files);
     tcase_add_test(test, deep_garbage);
     tcase_add_test(test, truncated_files);
+    tcase_add_test(test, embedded_buffers);
+    tcase_add_test(test, binary_lengths);
     tcase_add_test(test, malformed_escapes);
     tcase_add_test(test, broken_geometry);
     tcase_add_test(test, index_out_of_range);

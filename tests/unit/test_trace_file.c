@@ -67,7 +67,7 @@ static TraceStore *read_trace(const char *path, int count)
     ck_assert_int_eq(store_create(0, &store), RESULT_OK);
     ck_assert_int_eq(trace_file_is(path, &is), RESULT_OK);
     ck_assert(is);
-    ck_assert_msg(trace_file_read(path, store_sink(store)) == RESULT_OK, "%s", result_message());
+    ck_assert_msg(trace_file_read(path, store) == RESULT_OK, "%s", result_message());
     ck_assert_int_eq(store_count(store), count);
     return store;
 }
@@ -164,6 +164,9 @@ START_TEST(test_broken_dumps)
         {"peel-dump 1 accum rgba8 1x1 top little\nabc", "ends within"},
         {"peel-dump 1 accum rgba32f 16384x16384 top little\nabc", "ends within"},
         {"peel-dump 1 accum rgba8 1x1 top little\nabcdpeel", "buffer 1: expected a line"},
+        {"peel-dump 1 accum rgba8 1x1 top little\nabcdpeel-dump 1 accum rgba8 1x1 top "
+         "little\nabcd",
+         "buffer accum comes twice"},
         {"peel-dump 1 peel.0.depth d24 1x1 top little\nabcd", "beyond its format's range"},
     };
     const char *path = scratch_path("a.peel");
@@ -171,7 +174,7 @@ START_TEST(test_broken_dumps)
         TraceStore *store;
         ck_assert_int_eq(store_create(0, &store), RESULT_OK);
         ck_assert_int_eq(file_write(path, cases[i].text, strlen(cases[i].text)), RESULT_OK);
-        Result result = trace_file_read(path, store_sink(store));
+        Result result = trace_file_read(path, store);
         ck_assert_msg(result == RESULT_BAD_INPUT || result == RESULT_UNSUPPORTED, "case %zu: %s", i,
                       result_text(result));
         ck_assert_msg(strstr(result_message(), path) && strstr(result_message(), cases[i].message),
