@@ -17,6 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <png.h>
 #include <zlib.h>
 
 /* A library's two versions, each "" where it does not tell. */
@@ -26,7 +27,7 @@ typedef struct Library {
 } Library;
 
 enum {
-    LIBRARIES = 9
+    LIBRARIES = 10
 };
 
 static void add(Library *library, const char *name, const char *built, const char *runs)
@@ -58,8 +59,9 @@ static void find_libraries(Library out[LIBRARIES])
     snprintf(headers, sizeof headers, "%d.%d", __GLIBC__, __GLIBC_MINOR__);
     add(&out[6], "glibc", headers, gnu_get_libc_version());
     add(&out[7], "libjpeg-turbo", FACT_JPEG, "");
-    add(&out[8], "OSMesa", FACT_OSMESA, "");
-    context_library(out[8].runs, sizeof out[8].runs);
+    add(&out[8], "libpng", PNG_LIBPNG_VER_STRING, png_get_libpng_ver(NULL));
+    add(&out[9], "OSMesa", FACT_OSMESA, "");
+    context_library(out[9].runs, sizeof out[9].runs);
 }
 
 /* Names of what is true of each instruction set, with spaces between. */

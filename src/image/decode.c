@@ -1,7 +1,7 @@
 #include "image/decode.h"
 
 #include "image/decode_jpeg.h"
-#include "image/decode_png.h"
+#include "image/png.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static Result size_of(const unsigned char *bytes, size_t count, const char *labe
 {
     return *kind_of(bytes, count) == 'J'
                ? decode_jpeg_size(bytes, count, label, width, height, channels)
-               : decode_png_size(bytes, count, label, width, height, channels);
+               : png_decode_size(bytes, count, label, width, height, channels);
 }
 
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
@@ -57,7 +57,7 @@ Result decode_image(const unsigned char *bytes, size_t count, const char *label,
     if (result != RESULT_OK)
         return result;
     return *kind_of(bytes, count) == 'J' ? decode_jpeg_image(bytes, count, label, out)
-                                         : decode_png_image(bytes, count, label, out);
+                                         : png_decode(bytes, count, label, out);
 }
 
 Result decode_channels(const unsigned char *bytes, size_t count, const char *label, int *channels)

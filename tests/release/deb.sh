@@ -25,7 +25,7 @@ for name in peel "$library" libpeel-dev; do
     check "owners in $name" [ -z "$(grep -v ' root/root ' "$name.files")" ]
     check "nothing outside usr in $name" [ -z "$(grep -v ' \./usr/' "$name.files")" ]
 done
-for needed in libassimp5 libopenexr libjansson4 libjpeg62-turbo libgmp10 libnettle zlib1g libc6 libosmesa6; do
+for needed in libassimp5 libopenexr libjansson4 libjpeg62-turbo libpng16-16 libgmp10 libnettle zlib1g libc6 libosmesa6; do
     has 'what the program needs' "^ Depends: .*$needed" peel.info
 done
 has 'what the library needs' '^ Depends: libc6 [^,]*, libgmp10 [^,]*$' "$library.info"

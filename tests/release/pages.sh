@@ -48,7 +48,7 @@ exits 4 'version of what' "$peel" --version 2
 exits 0 'version' "$peel" --version
 has 'version first' '^peel [0-9]*\.[0-9]*\.[0-9]*$'
 for fact in compiler build flags sanitizers simd flushing source Assimp OpenEXR jansson zlib GMP \
-    nettle glibc libjpeg-turbo OSMesa; do
+    nettle glibc libjpeg-turbo libpng OSMesa; do
     has "fact $fact" "^$fact  *[^ ]"
 done
 has 'the flags that bits rest on' '^flags .*-ffp-contract=off'
