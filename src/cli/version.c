@@ -13,11 +13,11 @@
 #include <jansson.h>
 #include <nettle/version.h>
 #include <openexr.h>
+#include <png.h>
 #include <source_commit.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <png.h>
 #include <zlib.h>
 
 /* A library's two versions, each "" where it does not tell. */
