@@ -2,6 +2,7 @@
 #include "base/child.h"
 
 #include "base/clock.h"
+#include "base/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -121,12 +122,11 @@ Result child_limit(int pipe, const ChildLimits *limits)
  * for what ends a child at its limit or without its parent. No core file is left. */
 static void reset_signals(void)
 {
-    static const int numbers[] = {SIGXCPU, SIGPIPE, SIGABRT, SIGINT,  SIGTERM, SIGHUP,
-                                  SIGQUIT, SIGALRM, SIGUSR1, SIGUSR2, SIGPWR};
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    for (const int *number = file_ending_signals; *number; number++) {
         struct sigaction now;
-        if (i < 2 || (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN))
-            signal(numbers[i], SIG_DFL);
+        bool always = *number == SIGXCPU || *number == SIGPIPE;
+        if (always || (sigaction(*number, NULL, &now) == 0 && now.sa_handler != SIG_IGN))
+            signal(*number, SIG_DFL);
     }
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
 }

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -41,6 +42,9 @@ static void forget(const char *name)
             return;
     }
 }
+
+const int file_ending_signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGABRT, SIGQUIT,
+                                   SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2, SIGPWR,  0};
 
 void file_remove_temporaries(void)
 {

@@ -53,6 +53,10 @@ Result file_head(const char *path, void *bytes, size_t size, size_t *count);
  * program: async-signal-safe. */
 void file_remove_temporaries(void);
 
+/* Those signals: sent to end it, by a limit, or, SIGABRT, by libraries that find no memory. 0 is
+ * behind the last. */
+extern const int file_ending_signals[];
+
 /* Makes a directory and its parents where they are missing. */
 Result file_make_directories(const char *path);
 

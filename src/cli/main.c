@@ -78,18 +78,15 @@ static void on_signal(int number)
     raise(number); /* SA_RESETHAND: ends the program as the signal does */
 }
 
-/* SIGABRT: libraries that find no memory call abort(). SIGXCPU: a soft limit of processor time. */
 static void handle_signals(void)
 {
-    static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGABRT, SIGQUIT,
-                                  SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2, SIGPWR};
     signal(SIGXFSZ, SIG_IGN); /* a file that grows too large is a failed write */
     struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESETHAND | SA_NODEFER};
     sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+    for (const int *number = file_ending_signals; *number; number++) {
         struct sigaction now;
-        if (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler == SIG_DFL)
-            sigaction(numbers[i], &action, NULL);
+        if (sigaction(*number, NULL, &now) == 0 && now.sa_handler == SIG_DFL)
+            sigaction(*number, &action, NULL);
     }
 }
 

@@ -131,9 +131,9 @@ static const char *impossible_layers(const Truthful *study, size_t pixel, PixelC
     /* Of all of its layers: beyond the limit, or a layer that is peeled for ever. */
     bool behind = study->desc->passes > 0 || study->desc->peel_test == PEEL_TEST_RAW;
     for (int i = stored->count; class == CLASS_LOST_TIE && i-- > 0 && !what;) {
-        bool there = structure_find(ref->ids, ref->count, stored->ids[i]) >= 0;
         if (structure_find(stored->ids, i, stored->ids[i]) >= 0)
             continue; /* its first place counts */
+        bool there = structure_find(ref->ids, ref->count, stored->ids[i]) >= 0;
         behind = behind && !there;
         if (!there && !behind &&
             !possible_tie(study->possible, study->desc, pixel, stored, stored->ids[i]))

@@ -10,7 +10,7 @@ all=${3-}
 . "$source/tests/limits/writers.sh"
 export LC_ALL=C
 
-# A shell's background commands ignore SIGINT.
+# A shell's background commands ignore SIGINT and SIGQUIT.
 heeding="env --default-signal=INT,QUIT"
 
 # wait_for COMMAND...: until it succeeds, half a minute at most.

@@ -172,7 +172,7 @@ START_TEST(png_damaged)
 }
 END_TEST
 
-/* Four by four pixels in Adam7's seven passes: pixel (0, 0), (4, 0), … of which six have any. */
+/* Four by four pixels in Adam7's seven passes, of which five have any. */
 START_TEST(interlaced)
 {
     static const uint8_t passes[] = {0,  0, 0, 2, 0, 8, 10, 0,  1,  3,  0, 9,
