@@ -99,7 +99,10 @@ static Result emit(const Build *build, ChunkOutput *output, const Vertex *const 
         if (result != RESULT_OK)
             return result;
     }
-    output->wide |= setup_is_wide(corners);
+    if (setup_is_wide(corners)) {
+        output->wide = true;
+        primitive.box = wide_bounds(primitive.box, build->view->width, build->view->height);
+    }
     output->primitives[output->primitive_count++] = primitive;
     return RESULT_OK;
 }

@@ -36,6 +36,7 @@ static void fill_draw(const Pass *pass, uint32_t draw_index, HistoryFragment *ou
  * the fill rule gives all edges through the centre to this triangle. */
 static bool fill_edges(const Setup *setup, int x, int y, HistoryFragment *out, bool *covered)
 {
+    bool wide = setup_needs_wide(setup);
     *covered = out->has_edges = true;
     for (int i = 0; i < 3; i++) {
         const Edge *edge = &setup->edge[i];
@@ -43,8 +44,14 @@ static bool fill_edges(const Setup *setup, int x, int y, HistoryFragment *out, b
         out->owned[i] = edge->a < 0 || (edge->a == 0 && edge->b >= 0);
         out->edge[i] = (int64_t)(value - out->owned[i]);
         *covered = *covered && (int64_t)value > 0;
-        if (out->edge[i] < 0)
+        if (out->edge[i] < 0 && !wide)
             return false;
+    }
+    if (wide) {
+        Wide of;
+        wide_make(setup, &of);
+        *covered = wide_covers(&of, x, y);
+        return *covered;
     }
     return true;
 }

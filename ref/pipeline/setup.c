@@ -1,7 +1,5 @@
 #include "ref/pipeline/setup.h"
 
-#include <stdlib.h>
-
 static int64_t cross(int32_t ax, int32_t by, int32_t bx, int32_t ay)
 {
     return (int64_t)((uint64_t)((int64_t)ax * by) - (uint64_t)((int64_t)bx * ay));
@@ -28,7 +26,7 @@ bool setup_is_wide(const Vertex *const corners[3])
     bool wide = false;
     for (int i = 0; i < 3; i++) {
         Edge edge = setup_edge(corners[i], corners[(i + 1) % 3]);
-        wide |= llabs(edge.a) > SETUP_STEP_MAX || llabs(edge.b) > SETUP_STEP_MAX;
+        wide |= setup_step_is_wide(edge.a) || setup_step_is_wide(edge.b);
     }
     return wide;
 }
@@ -60,6 +58,18 @@ PixelRect setup_bounds(const Vertex *const corners[3], int width, int height)
 
 void setup_triangle(const Vertex *const corners[3], bool flipped, int width, int height, Setup *out)
 {
-    setup_make(corners, snapped_area(corners) < 0, flipped, setup_bounds(corners, width, height),
-               out);
+    PixelRect box = setup_bounds(corners, width, height);
+    if (setup_is_wide(corners) && box.x0 <= box.x1 && box.y0 <= box.y1)
+        box = wide_bounds(box, width, height);
+    setup_make(corners, snapped_area(corners) < 0, flipped, box, out);
+}
+
+void setup_visit_wide(const Setup *setup, PixelRect rect, SetupVisit visit, void *context)
+{
+    Wide wide;
+    wide_make(setup, &wide);
+    for (int y = rect.y0; y <= rect.y1; y++)
+        for (int x = rect.x0; x <= rect.x1; x++)
+            if (wide_covers(&wide, x, y))
+                visit(context, setup, x, y);
 }

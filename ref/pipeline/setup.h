@@ -9,6 +9,7 @@
 
 #include "number/op.h"
 #include "ref/pipeline/geometry.h"
+#include "ref/pipeline/wide.h"
 
 typedef enum Facing {
     FACING_NONE = 0,
@@ -38,7 +39,8 @@ typedef struct Setup {
 /* Sign of the snapped area: counter-clockwise in window space is front; flipped changes sides. */
 Facing setup_facing(const Vertex *const corners[3], bool flipped);
 
-/* Pixels that can be covered, inside width×height; empty when x0 > x1 or y0 > y1. */
+/* Pixels that can be covered, inside width×height, by a triangle that is not wide; empty when
+ * x0 > x1 or y0 > y1. */
 PixelRect setup_bounds(const Vertex *const corners[3], int width, int height);
 
 enum {
@@ -46,13 +48,18 @@ enum {
     SETUP_STEP_MAX = SIZE_MAX_PIXELS * 256
 };
 
+static inline bool setup_step_is_wide(int64_t step)
+{
+    return step > SETUP_STEP_MAX || step < -SETUP_STEP_MAX;
+}
+
 /* Whether an edge is longer than that, in x or y. What the clipper leaves lies within the viewport
  * but where w is next to 0, and rounding puts a corner anywhere. */
 bool setup_is_wide(const Vertex *const corners[3]);
 
 /* Of two snapped coordinates, wrapping as the driver does: a vertex with w = 0 snaps to INT32_MIN.
  * Those of clipped vertices lie within the viewport, and every product here fits. Where it does
- * not, values of edges wrap, too. */
+ * not, values of edges wrap, too, and wide.h says what is covered. */
 static inline int32_t setup_difference(int32_t a, int32_t b)
 {
     return (int32_t)((uint32_t)a - (uint32_t)b);
@@ -88,7 +95,7 @@ static inline Plane setup_plane(const Setup *setup, float p0, float p1, float p2
 }
 
 /* For a triangle whose facing is not FACING_NONE. swap: its snapped area is negative. box:
- * setup_bounds. */
+ * setup_bounds, or wide_bounds of it. */
 static inline void setup_make(const Vertex *const corners[3], bool swap, bool flipped,
                               PixelRect box, Setup *out)
 {
@@ -129,7 +136,19 @@ static inline float setup_depth_at(bool fused, const Setup *setup, int x, int y)
     return op_add(plane_at(fused, &setup->depth, x, y), 0.0f);
 }
 
+/* setup_is_wide, of its corners. */
+static inline bool setup_needs_wide(const Setup *setup)
+{
+    bool wide = false;
+    for (int i = 0; i < 3; i++)
+        wide |= setup_step_is_wide(setup->edge[i].a) || setup_step_is_wide(setup->edge[i].b);
+    return wide;
+}
+
 typedef void (*SetupVisit)(void *context, const Setup *setup, int x, int y);
+
+/* setup_visit of a wide triangle; rect is within its box. */
+void setup_visit_wide(const Setup *setup, PixelRect rect, SetupVisit visit, void *context);
 
 /* Calls visit for every covered pixel inside rect, row by row. Inlined into its caller, and visit
  * with it when it is a known function. */
@@ -140,6 +159,11 @@ static inline __attribute__((always_inline)) void setup_visit(const Setup *setup
     int y0 = setup->box.y0 > rect.y0 ? setup->box.y0 : rect.y0;
     int x1 = setup->box.x1 < rect.x1 ? setup->box.x1 : rect.x1;
     int y1 = setup->box.y1 < rect.y1 ? setup->box.y1 : rect.y1;
+    if (setup_needs_wide(setup)) {
+        PixelRect part = {(int16_t)x0, (int16_t)y0, (int16_t)x1, (int16_t)y1};
+        setup_visit_wide(setup, part, visit, context);
+        return;
+    }
     const Edge *e = setup->edge;
     for (int y = y0; y <= y1; y++) {
         uint64_t value[3];

@@ -78,6 +78,11 @@ static bool has_option(int argc, char **argv, const char *option)
 
 int cmd_explain(int argc, char **argv)
 {
+    bool page = has_option(argc, argv, "-o") || has_option(argc, argv, "--output");
+    if (page && has_option(argc, argv, "--pixel")) {
+        options_error("explain: --pixel prints to the terminal and -o writes a page: expected one");
+        return EXIT_BAD_INPUT;
+    }
     if (has_option(argc, argv, "--pixel"))
         return cmd_explain_pixel(argc, argv);
     if (has_option(argc, argv, "--course"))

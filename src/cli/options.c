@@ -21,6 +21,8 @@
 
 static bool reported; /* a parser has printed its line */
 
+static const char *made_directory; /* by options_open_directory; NULL: it was there, or none */
+
 error_t options_error(const char *format, ...)
 {
     char text[RESULT_LINE];
@@ -37,6 +39,8 @@ int options_fail(Result result)
 {
     const char *message = result_message();
     fprintf(stderr, "peel: %s\n", *message ? message : result_text(result));
+    if (made_directory)
+        rmdir(made_directory); /* if nothing is in it */
     return EXIT_BAD_INPUT;
 }
 
@@ -390,7 +394,10 @@ Result options_check_outputs(const char *first, const char *second, const char *
 
 Result options_open_directory(const char *path)
 {
+    bool there = access(path, F_OK) == 0;
     Result result = file_make_directories(path);
+    if (result == RESULT_OK && !there)
+        made_directory = path;
     if (result == RESULT_OK && access(path, W_OK) != 0)
         result =
             result_fail(RESULT_IO, "%s: cannot write to this directory: %s", path, strerror(errno));

@@ -119,14 +119,16 @@ Result options_check_output(const char *path);
  * the page in the directory `report`, which is made. */
 Result options_check_outputs(const char *first, const char *second, const char *report);
 
-/* Makes a directory, and finds it writable, before minutes of work and not after. */
+/* Makes a directory, and finds it writable, before minutes of work and not after. path, an argument
+ * of the program: if the command fails and has written nothing into it, it goes again. */
 Result options_open_directory(const char *path);
 
 /* The command as a shell would take it again: argv[0] is "peel <command>", or empty to have the
  * arguments alone, each behind a space; NULL when memory is exhausted. The caller frees. */
 char *options_command_line(int argc, char **argv);
 
-/* Prints "peel: <message>" and returns EXIT_BAD_INPUT. */
+/* Prints "peel: <message>", removes an empty directory that options_open_directory made, and
+ * returns EXIT_BAD_INPUT. */
 int options_fail(Result result);
 
 #endif

@@ -187,6 +187,9 @@ unset GALLIUM_DRIVER
 mkdir -p library && : >library/libOSMesa.so.8
 export LD_LIBRARY_PATH="$work/library"
 refuse 'no OSMesa' 'libosmesa6' render tutorial --size 8x8 --with gl -o gl.png
+refuse 'a page of what is too large' 'the limit is' bench tutorial --size 64x64 --max-memory 10 \
+    --report page
+refuse 'a page of one pixel' 'expected one' explain tutorial --pixel 1,1 -o page
 refuse 'no OSMesa' 'libosmesa6' compare tutorial --size 8x8
 unset LD_LIBRARY_PATH
 

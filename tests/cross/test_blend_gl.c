@@ -120,10 +120,13 @@ END_TEST
 int main(void)
 {
     Suite *suite = suite_create("blend_gl");
-    TCase *tcase = tcase_create("driver");
+    TCase *whole = tcase_create("whole"), *tcase = tcase_create("driver");
+    tcase_set_timeout(whole, 400);
     tcase_set_timeout(tcase, 400);
+    tcase_add_checked_fixture(whole, labs_open, labs_close);
     tcase_add_checked_fixture(tcase, labs_open, labs_close);
-    tcase_add_test(tcase, test_all_triples);
+    tcase_add_test(whole, test_all_triples);
+    suite_add_tcase(suite, whole);
     tcase_add_loop_test(tcase, test_every_equation, 0, ARITHMETIC_FORMATS);
     tcase_add_test(tcase, test_faulty);
     tcase_add_test(tcase, test_stored_otherwise);

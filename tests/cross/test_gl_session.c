@@ -77,7 +77,7 @@ END_TEST
 /* Opaque surfaces, too. */
 START_TEST(test_scenes_with_opaque_surfaces)
 {
-    RenderDesc desc = {.width = 48, .height = 27, .lights = 3, .method = (MethodId)_i};
+    RenderDesc desc = {.width = 48, .height = 27, .lights = 3, .method = (MethodId)_i, .passes = 3};
     check("teapot_hall", &desc);
 }
 END_TEST

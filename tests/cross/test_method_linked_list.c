@@ -268,7 +268,7 @@ START_TEST(test_long_lists)
     };
     static Layers layers;
     static Instance instances[MANY];
-    RenderDesc desc = {.width = 5, .height = 3, .method = METHOD_LINKED_LIST};
+    RenderDesc desc = {.width = 2, .height = 1, .method = METHOD_LINKED_LIST};
     Bits bits;
     layers_ladder(LAYERS_MAX, &layers);
     for (int i = 0; i < MANY; i++) {

@@ -1,10 +1,15 @@
 /* ref's tile path on the built-in scenes: the bits of the definition path, whatever the
- * instructions, threads and size of tiles, and whatever the number of peels, formats and tests. */
+ * instructions, threads and size of tiles, and whatever the number of peels, formats and tests.
+ *
+ * Of the sizes and threads, each scene and kind of settings takes a third, over the kinds all with
+ * all instructions. PEEL_TEST_FULL=1: all. */
 #include "testing.h"
 
 #include "frame/frame.h"
 #include "ref/pipeline/pipeline.h"
 #include "scene/generate.h"
+
+#include <stdlib.h>
 
 enum {
     WIDTH = 99, /* neither is a multiple of a tile */
@@ -69,10 +74,19 @@ static bool available(const Scene *scene, SimdChoice simd)
     return result != RESULT_UNSUPPORTED;
 }
 
+/* Tiles, and the threads that they are shared by: each size with one number, and ref's own size
+ * (0) with each. */
+static const struct {
+    int tile, threads;
+} variants[] = {{8, 1}, {16, 2}, {32, 8}, {128, 2}, {256, 8}, {64, 1}, {0, 8}, {0, 1}, {0, 2}};
+enum {
+    VARIANTS = sizeof variants / sizeof *variants
+};
+
 /* All instructions, thread counts and sizes of tiles of one scene and kind. */
 START_TEST(test_variants)
 {
-    static const int threads[] = {1, 2, 8};
+    int step = getenv("PEEL_TEST_FULL") ? 1 : 3;
     size_t count;
     const BuiltinScene *builtin = &generate_table(&count)[_i / KINDS];
     Scene scene;
@@ -89,13 +103,9 @@ START_TEST(test_variants)
     for (desc.simd = SIMD_SCALAR; desc.simd < SIMD_COUNT; desc.simd++) {
         if (!available(&scene, desc.simd))
             continue;
-        for (desc.tile = TILE_MIN; desc.tile <= TILE_MAX; desc.tile *= 2) {
-            desc.threads = threads[(unsigned)__builtin_ctz((unsigned)desc.tile) % 3];
-            check_variant(&scene, builtin->name, &desc, &expected);
-        }
-        desc.tile = 0;
-        for (int i = 0; i < 3; i++) {
-            desc.threads = threads[i];
+        for (int i = (_i + (int)desc.simd) % step; i < VARIANTS; i += step) {
+            desc.tile = variants[i].tile;
+            desc.threads = variants[i].threads;
             check_variant(&scene, builtin->name, &desc, &expected);
         }
     }

@@ -1,25 +1,56 @@
 /* The rasterizer: a triangle soup made of the input, by ref's definition, by its tile path with two
  * choices of tile size, SIMD path and threads (the same bits and counts), and, where the input says
  * so, against truth: every difference within the bound of single precision, or explained, as in the
- * long run (tests/cross/trial.h). What is not finite must be a sum that left its format. */
+ * long run (tests/cross/trial.h). What is not finite must be a sum that left its format, or of a
+ * triangle whose 1/w may cancel. */
 #include "fuzz.h"
 
 #include "paths.h"
 #include "raster_input.h"
+#include "scene_geometry.h"
 #include "trial.h"
 
 #include "compare/finite.h"
 #include "ref/pipeline/pipeline.h"
 
+/* The digits of a float, less two for the sum and its roundings. */
+#define W_RATIO_MAX 0x1p22f
+
+/* Whether 1/w may be interpolated to 0, and what is divided by it be infinite or NaN: where the
+ * nearest corner's is so much larger than the farthest one's that this is lost in its rounding. */
+static bool w_cancels(const Geometry *geometry, const PrimitiveList *list)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        float least = INFINITY, most = 0.0f;
+        for (int k = 0; k < 3; k++) {
+            float inverse_w = geometry->vertices[list->items[i].vertex[k]].window[3];
+            least = fminf(least, inverse_w);
+            most = fmaxf(most, inverse_w);
+        }
+        if (!(most <= least * W_RATIO_MAX))
+            return true;
+    }
+    return false;
+}
+
+static bool any_w_cancels(const Geometry *geometry)
+{
+    return w_cancels(geometry, &geometry->opaque) || w_cancels(geometry, &geometry->transparent);
+}
+
 /* Every stored value of every pass, and the image, unless a sum left its format. */
-static void check_finite(const Finite *finite, const Frame *frame)
+static void check_finite(const Finite *finite, const Scene *scene, const RenderDesc *desc,
+                         const Frame *frame)
 {
     const float *values = frame->final.pixels;
     uint64_t nonfinite = finite->nonfinite;
     for (size_t i = 0; i < 4 * (size_t)frame->final.width * (size_t)frame->final.height; i++)
         nonfinite += !isfinite(values[i]);
-    FUZZ_CHECK(nonfinite == 0 || frame->layers.overflowed > 0, "%llu values",
-               (unsigned long long)nonfinite);
+    bool explained = nonfinite == 0 || frame->layers.overflowed > 0;
+    if (!explained)
+        FUZZ_CHECK(scene_geometry_ask(scene, desc, any_w_cancels, &explained) == RESULT_OK, "%s",
+                   result_message());
+    FUZZ_CHECK(explained, "%llu values", (unsigned long long)nonfinite);
 }
 
 static void check_tiles(const Scene *scene, const RenderDesc *desc, const Frame *definition)
@@ -51,7 +82,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     Frame definition;
     FUZZ_CHECK(pipeline_render(scene, &input.desc, &finite.sink, &definition) == RESULT_OK, "%s",
                result_message());
-    check_finite(&finite, &definition);
+    check_finite(&finite, scene, &input.desc, &definition);
     check_tiles(scene, &input.desc, &definition);
     check_tiles(scene, &input.other, &definition);
     frame_free(&definition);

@@ -97,6 +97,47 @@ START_TEST(test_brute_force)
 }
 END_TEST
 
+/* Where nothing overflows, the driver's way by tiles and blocks is the plain rule: in all pixels of
+ * the tiles that the box touches. */
+START_TEST(test_wide_is_exact_where_it_fits)
+{
+    enum {
+        SIDE = 200
+    };
+    Random random = random_seed(4);
+    uint64_t covered = 0, alone = 0, cases = 3000;
+    for (uint64_t i = 0; i < cases; i++) {
+        Vertex v[3];
+        double centre[2] = {random_range(&random, 0, SIDE), random_range(&random, 0, SIDE)};
+        double size = (double[]){3, 40, 400, 8000}[i % 4];
+        for (int k = 0; k < 3; k++)
+            v[k] = window_vertex((float)(centre[0] + random_range(&random, -size, size)),
+                                 (float)(centre[1] + random_range(&random, -size, size)), 0);
+        const Vertex *const corners[3] = {&v[0], &v[1], &v[2]};
+        Setup setup;
+        Wide wide;
+        setup_triangle(corners, false, SIDE, SIDE, &setup);
+        if (setup_facing(corners, false) == FACING_NONE || setup.box.x0 > setup.box.x1 ||
+            setup.box.y0 > setup.box.y1)
+            continue;
+        setup.box = wide_bounds(setup.box, SIDE, SIDE);
+        wide_make(&setup, &wide);
+        alone += wide.alone;
+        for (int y = setup.box.y0; y <= setup.box.y1; y++)
+            for (int x = setup.box.x0; x <= setup.box.x1; x++) {
+                bool expected = covers(&v[0], &v[1], &v[2], x, y);
+                covered += expected;
+                if (wide_covers(&wide, x, y) != expected)
+                    ck_abort_msg("case %llu: (%d, %d), expected %d", (unsigned long long)i, x, y,
+                                 expected);
+            }
+    }
+    ck_assert_uint_gt(covered, 100 * cases);
+    ck_assert_uint_gt(alone, cases / 8);
+    ck_assert_uint_lt(alone, cases / 2);
+}
+END_TEST
+
 /* A fan around a point covers the polygon once: no pixel twice, none missed, whatever side an edge
  * is seen from. */
 START_TEST(test_fan_covers_once)
@@ -290,6 +331,7 @@ int main(void)
     tcase_set_timeout(tcase, 300);
     tcase_add_test(tcase, test_square_on_centres);
     tcase_add_test(tcase, test_brute_force);
+    tcase_add_test(tcase, test_wide_is_exact_where_it_fits);
     tcase_add_test(tcase, test_fan_covers_once);
     tcase_add_test(tcase, test_strip_covers_once);
     tcase_add_test(tcase, test_rect_limits_visit);
