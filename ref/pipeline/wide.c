@@ -30,6 +30,17 @@ static int32_t multiply(int32_t a, int b)
     return wrap((uint64_t)(uint32_t)a * (uint32_t)b);
 }
 
+/* The next number below. */
+static int64_t below(int64_t a)
+{
+    return (int64_t)((uint64_t)a - 1);
+}
+
+static int32_t shifted(int64_t a)
+{
+    return wrap((uint64_t)(a >> BITS));
+}
+
 /* ---- setup ---------------------------------------------------------------------------------- */
 
 PixelRect wide_bounds(PixelRect box, int width, int height)
@@ -99,6 +110,9 @@ static int judge_tile(const Wide *wide, int column, int row)
 /* Of a row of tiles the driver looks at none behind those that it has left. */
 static int tile_planes(const Wide *wide, int column, int row)
 {
+    if (column < wide->tiles.x0 || column > wide->tiles.x1 || row < wide->tiles.y0 ||
+        row > wide->tiles.y1)
+        return TILE_OUTSIDE;
     if (wide->alone)
         return ALL_PLANES;
     bool entered = false;
@@ -141,7 +155,7 @@ static Block judge_block(const Wide *wide, int planes, int size, int x, int y, i
         int32_t dx = negative(plane->dx) >> BITS, dy = plane->dy >> BITS,
                 reach = (int32_t)(plane->reach >> BITS);
         int32_t inside = multiply(add(add(dy, dx), -reach), size);
-        int32_t value = wrap((uint64_t)(at >> BITS)), less = wrap((uint64_t)((at - 1) >> BITS));
+        int32_t value = shifted(at), less = shifted(below(at));
         reach = multiply(reach, size);
         int32_t most = add(value, reach),
                 least = add(most, add(add(inside, negative(reach)), add(less, negative(value))));
@@ -164,11 +178,10 @@ static bool covers_pixel(const Wide *wide, int planes, int x, int y)
         if (!(planes >> p & 1))
             continue;
         const WidePlane *plane = &wide->planes[p];
-        int64_t at = plane_at_pixel(plane, x - x % BLOCKS, y - y % BLOCKS) - 1;
-        if (negative_values(wrap((uint64_t)(at >> BITS)), negative(plane->dx) >> BITS,
-                            plane->dy >> BITS) >>
-                i &
-            1)
+        int64_t at = below(plane_at_pixel(plane, x - x % BLOCKS, y - y % BLOCKS));
+        unsigned outside =
+            negative_values(shifted(at), negative(plane->dx) >> BITS, plane->dy >> BITS);
+        if (outside >> i & 1)
             return false;
     }
     return true;

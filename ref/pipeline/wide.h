@@ -29,7 +29,7 @@ struct Setup;
 
 void wide_make(const struct Setup *setup, Wide *out);
 
-/* Whether pixel (x, y), within that box, is covered. */
+/* Whether pixel (x, y) of the frame is covered. */
 bool wide_covers(const Wide *wide, int x, int y);
 
 #endif

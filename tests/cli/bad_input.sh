@@ -137,6 +137,9 @@ refuse 'output extension' '.png or .exr' render tutorial -o out.jpg
 refuse 'output directory missing' 'nosuch/out.png' render tutorial --size 8x8 -o nosuch/out.png
 refuse 'output is a directory' 'directory' render tutorial --size 8x8 --trace directory.exr
 refuse 'unwritable directory' '/proc/x.png' render tutorial --size 8x8 -o /proc/x.png
+refuse 'a page of what is too large' 'the limit is' bench tutorial --size 64x64 --max-memory 10 \
+    --report page
+refuse 'a page of one pixel' 'expected one' explain tutorial --pixel 1,1 -o page
 refuse 'unwritable report' '/proc/x' compare tutorial --size 8x8 --report /proc/x
 refuse 'deep with ref' 'expected --with truth, not ref' render tutorial --size 8x8 -o a.exr --deep
 refuse 'deep with gl' 'expected --with truth, not gl' render tutorial -o a.exr --deep --with gl
@@ -187,9 +190,6 @@ unset GALLIUM_DRIVER
 mkdir -p library && : >library/libOSMesa.so.8
 export LD_LIBRARY_PATH="$work/library"
 refuse 'no OSMesa' 'libosmesa6' render tutorial --size 8x8 --with gl -o gl.png
-refuse 'a page of what is too large' 'the limit is' bench tutorial --size 64x64 --max-memory 10 \
-    --report page
-refuse 'a page of one pixel' 'expected one' explain tutorial --pixel 1,1 -o page
 refuse 'no OSMesa' 'libosmesa6' compare tutorial --size 8x8
 unset LD_LIBRARY_PATH
 

@@ -43,10 +43,10 @@ row() {
 }
 
 # A program that ctest also runs against a driver that does not fuse has a second test, _unfused.
-# What is not called test_ is a script that runs peel.
+# What is called otherwise is a script that runs peel.
 build_test() {
     case $1 in
-    test_* | campaign) target=${1%_unfused} ;;
+    test_* | fuzz_* | campaign) target=${1%_unfused} ;;
     *) target=peel ;;
     esac
     ninja -C "$build" "$target" >"$work/build.log" 2>&1
