@@ -191,6 +191,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_ARG:
         return parse_file(argument, command);
     case ARGP_KEY_SUCCESS:
+        if (command->render.given && !command->scene)
+            return options_error("diff: --%s says how a scene is rendered; expected --scene, too",
+                                 command->render.given);
         return command->paths[1] ? 0 : options_error("diff: expected two files");
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;

@@ -31,6 +31,7 @@ typedef struct RenderOptions {
     bool has_opacity, has_background;
     bool all_methods;            /* --method all, of commands that take it */
     bool has_method, has_passes; /* one was given */
+    const char *given;           /* the first option that says how to render; NULL: none */
     double opacity, background[3];
     FmaChoice fma;
     int profile;                 /* −1: not given; 1: seed */

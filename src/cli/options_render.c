@@ -372,10 +372,19 @@ static error_t parse_bias(const char *text, RenderDesc *desc)
     return error;
 }
 
+/* --max-memory is for what is read, too. */
+static void note_given(const struct argp_option *table, int key, RenderOptions *options)
+{
+    for (const struct argp_option *o = table; (o->name || o->doc) && !options->given; o++)
+        if (o->name && o->key == key && key != KEY_MEMORY)
+            options->given = o->name;
+}
+
 static error_t parse_settings(int key, char *argument, struct argp_state *state)
 {
     RenderOptions *options = state->input;
     RenderDesc *desc = &options->desc;
+    note_given(settings, key, options);
     switch (key) {
     case KEY_CAMERA:
         options->camera = argument;
@@ -412,6 +421,7 @@ static error_t parse_render(int key, char *argument, struct argp_state *state)
 {
     RenderOptions *options = state->input;
     RenderDesc *desc = &options->desc;
+    note_given(render_options, key, options);
     switch (key) {
     case KEY_SIZE:
         return options_size(argument, desc);

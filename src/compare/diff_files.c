@@ -35,13 +35,15 @@ static Result read_png(const char *path, size_t max_bytes, Planes *out)
         return result;
     if (count < 4 || (memcmp(bytes, "\x89PNG", 4) != 0 && memcmp(bytes, "\xff\xd8\xff", 3) != 0))
         result = result_fail(RESULT_BAD_INPUT, "%s: no image, expected PNG or OpenEXR", path);
+    int width, height, channels = 0;
+    if (result == RESULT_OK)
+        result = decode_size(bytes, count, path, &width, &height, &channels);
+    if (result == RESULT_OK)
+        result = planes_fit(width, height, channels, max_bytes, path);
     if (result == RESULT_OK)
         result = decode_image(bytes, count, path, &image);
-    int channels = 0;
     if (result == RESULT_OK)
-        result = decode_channels(bytes, count, path, &channels);
-    if (result == RESULT_OK)
-        result = planes_from_image(&image, channels, max_bytes, path, out);
+        result = planes_from_image(&image, channels, out);
     image_free(&image);
     free(bytes);
     return result;

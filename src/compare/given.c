@@ -39,11 +39,11 @@ static Result load_png(const char *path, GivenImage *out)
     Result result = file_load(path, &bytes, &count);
     if (result != RESULT_OK)
         return result;
-    result = decode_image(bytes, count, path, &out->stored);
-    out->kind = "PNG";
-    int channels = 0;
+    int width, height, channels = 0;
+    result = decode_size(bytes, count, path, &width, &height, &channels);
     if (result == RESULT_OK)
-        result = decode_channels(bytes, count, path, &channels);
+        result = decode_image(bytes, count, path, &out->stored);
+    out->kind = "PNG";
     out->has_alpha = channels % 2 == 0;
     free(bytes);
     return result;

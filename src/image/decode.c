@@ -20,23 +20,14 @@ static const char *kind_of(const unsigned char *bytes, size_t count)
     return count >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0 ? "JPEG" : NULL;
 }
 
-/* Of a file whose kind and header were found to be sound. */
-static Result size_of(const unsigned char *bytes, size_t count, const char *label, int *width,
-                      int *height, int *channels)
-{
-    return *kind_of(bytes, count) == 'J'
-               ? decode_jpeg_size(bytes, count, label, width, height, channels)
-               : png_decode_size(bytes, count, label, width, height, channels);
-}
-
 Result decode_size(const unsigned char *bytes, size_t count, const char *label, int *width,
-                   int *height)
+                   int *height, int *channels)
 {
     const char *kind = kind_of(bytes, count);
-    int channels;
     if (!kind)
         return result_fail(RESULT_BAD_INPUT, "%s: expected PNG or JPEG data", label);
-    Result result = size_of(bytes, count, label, width, height, &channels);
+    Result result = *kind == 'J' ? decode_jpeg_size(bytes, count, label, width, height, channels)
+                                 : png_decode_size(bytes, count, label, width, height, channels);
     if (result != RESULT_OK)
         return result;
     if (*width < 1 || *height < 1 || *width > DECODE_MAX_PIXELS || *height > DECODE_MAX_PIXELS)
@@ -51,17 +42,11 @@ Result decode_size(const unsigned char *bytes, size_t count, const char *label, 
 
 Result decode_image(const unsigned char *bytes, size_t count, const char *label, Image *out)
 {
-    int width, height;
+    int width, height, channels;
     *out = (Image){0};
-    Result result = decode_size(bytes, count, label, &width, &height);
+    Result result = decode_size(bytes, count, label, &width, &height, &channels);
     if (result != RESULT_OK)
         return result;
     return *kind_of(bytes, count) == 'J' ? decode_jpeg_image(bytes, count, label, out)
                                          : png_decode(bytes, count, label, out);
-}
-
-Result decode_channels(const unsigned char *bytes, size_t count, const char *label, int *channels)
-{
-    int width, height;
-    return size_of(bytes, count, label, &width, &height, channels);
 }

@@ -5,15 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+Result planes_fit(int width, int height, int count, size_t max_bytes, const char *label)
+{
+    size_t pixels = (size_t)width * (size_t)height;
+    if (!max_bytes || pixels * sizeof(uint32_t) <= max_bytes / (size_t)count)
+        return RESULT_OK;
+    return result_fail(RESULT_NO_MEMORY, "%s: %d channels of %dx%d pixels need more than %zu bytes",
+                       label, count, width, height, max_bytes);
+}
+
 Result planes_create(int width, int height, int count, size_t max_bytes, const char *label,
                      Planes *out)
 {
     size_t pixels = (size_t)width * (size_t)height;
     *out = (Planes){.width = width, .height = height};
-    if (max_bytes && pixels * sizeof(uint32_t) > max_bytes / (size_t)count)
-        return result_fail(RESULT_NO_MEMORY,
-                           "%s: %d channels of %dx%d pixels need more than %zu bytes", label, count,
-                           width, height, max_bytes);
+    Result result = planes_fit(width, height, count, max_bytes, label);
+    if (result != RESULT_OK)
+        return result;
     out->planes = memory_array((size_t)count, sizeof *out->planes);
     if (!out->planes)
         return RESULT_NO_MEMORY;
@@ -105,13 +113,12 @@ bool planes_keep(Planes *planes, const char *names)
     return true;
 }
 
-Result planes_from_image(const Image *image, int channels, size_t max_bytes, const char *label,
-                         Planes *out)
+Result planes_from_image(const Image *image, int channels, Planes *out)
 {
     static const char *const names[4][4] = {
         {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     const FormatInfo *info = format_info(image->format);
-    Result result = planes_create(image->width, image->height, channels, max_bytes, label, out);
+    Result result = planes_create(image->width, image->height, channels, 0, "", out);
     for (int c = 0; c < channels && result == RESULT_OK; c++) {
         Plane *plane = &out->planes[c];
         int from = channels == 2 && c == 1 ? 3 : c;

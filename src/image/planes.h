@@ -20,9 +20,12 @@ typedef struct Planes {
     Plane *planes; /* R, G, B, A or Y first, then the others as they come; owned */
 } Planes;
 
-/* Zeroed planes without names, of KIND_FLOAT. NO_MEMORY also when they would take more than
- * max_bytes (0: no limit); label begins the message. The caller frees with planes_free, after a
- * failure too. */
+/* NO_MEMORY when so many planes would take more than max_bytes (0: no limit); label begins the
+ * message. */
+Result planes_fit(int width, int height, int count, size_t max_bytes, const char *label);
+
+/* Zeroed planes without names, of KIND_FLOAT, which planes_fit. The caller frees with planes_free,
+ * after a failure too. */
 Result planes_create(int width, int height, int count, size_t max_bytes, const char *label,
                      Planes *out);
 void planes_free(Planes *planes); /* leaves empty planes; empty ones are fine */
@@ -41,8 +44,7 @@ bool planes_keep(Planes *planes, const char *names);
 
 /* The first `channels` channels of image, of 1 to 4: Y; Y, A; R, G, B; R, G, B, A. Of the first two
  * the image has grey in R, G and B. NO_MEMORY leaves nothing to free. */
-Result planes_from_image(const Image *image, int channels, size_t max_bytes, const char *label,
-                         Planes *out);
+Result planes_from_image(const Image *image, int channels, Planes *out);
 
 /* A stored value as a number: floats and halves exactly, unorm as integer / unorm_max rounded to
  * float, integers as they are. */

@@ -44,10 +44,10 @@ static Result decode(GltfTextures *textures, const GltfTextureKey *key, const Gl
                      Texture *out)
 {
     char label[512];
-    int width, height;
+    int width, height, channels;
     Image image;
     snprintf(label, sizeof label, "%s: image %zu", textures->bytes->path, key->image);
-    Result result = decode_size(span->bytes, span->count, label, &width, &height);
+    Result result = decode_size(span->bytes, span->count, label, &width, &height, &channels);
     if (result)
         return result;
     textures->texels += (uint64_t)width * (uint64_t)height;

@@ -262,8 +262,15 @@ refuse '-o of deep images' 'only a heat map' -o out.exr deep0.5.exr deep0.25.exr
 refuse '--worst' 'from 0 to' --worst -1 a.exr b.exr
 refuse 'unknown' "'-foo' is no option" -foo a.exr b.exr
 refuse 'scene' 'no such file' --scene nosuch a.exr b.exr
+for option in '--lights 2' '--depth d16'; do
+    # shellcheck disable=SC2086 # two words
+    refuse "$option" "^peel: diff: ${option% *} says how a scene is rendered; expected --scene, too$" \
+        $option a.exr b.exr
+done
 refuse 'size' 'the images have 8x6 pixels' --scene chain --size 9x9 a.exr b.exr
 refuse 'memory' 'need more than 100 bytes' --max-memory 100 a.exr b.exr
+refuse 'memory of a PNG' '^peel: a.png: 3 channels of 8x6 pixels need more than 100 bytes$' \
+    --max-memory 100 a.png a.png
 refuse 'memory to see with' 'test of 8x6 pixels: needs more than 4000 bytes' -p --max-memory 4000 \
     a.exr b.exr
 refuse 'JSON' 'cannot write' --json /nosuch/file a.exr b.exr

@@ -61,14 +61,15 @@ START_TEST(color_key)
         {PNG_GREY, {7, 8}, {0, 7}, {7, 7, 7, 0, 8, 8, 8, 255}, 2, 2}};
     for (int i = 0; i < 2; i++)
         for (int keyed = 0; keyed < 2; keyed++) {
-            int stored = 0;
+            int width, height, stored = 0;
             SmallPng png = png_begin(2, 1, 8, kinds[i].type);
             if (keyed)
                 png_chunk(&png, "tRNS", kinds[i].key, (size_t)kinds[i].key_bytes);
             png_end(&png, kinds[i].row, (size_t)kinds[i].row_bytes, 1);
             if (keyed)
                 decodes(&png, FORMAT_RGBA8, kinds[i].rgba, 8);
-            ck_assert_int_eq(decode_channels(png.bytes, png.count, "x", &stored), RESULT_OK);
+            ck_assert_int_eq(decode_size(png.bytes, png.count, "x", &width, &height, &stored),
+                             RESULT_OK);
             ck_assert_int_eq(stored, (kinds[i].type == PNG_RGB ? 3 : 1) + keyed);
         }
 }
@@ -314,7 +315,7 @@ START_TEST(jpeg_kinds)
     unsigned char *bytes;
     size_t count = write_jpeg(kind, NULL, 0, &bytes);
     Image image;
-    int stored;
+    int width, height, stored;
     Result result = decode_image(bytes, count, "x", &image);
     ck_assert_msg(result == RESULT_OK, "%s", result_message());
     ck_assert(image.width == 24 && image.height == 16 && image.format == FORMAT_RGBA8);
@@ -324,7 +325,8 @@ START_TEST(jpeg_kinds)
             ck_assert_int_le(abs(pixel[c] - kind->expected[c]), 3);
         ck_assert_int_eq(pixel[3], 255);
     }
-    ck_assert_int_eq(decode_channels(bytes, count, "x", &stored), RESULT_OK);
+    ck_assert_int_eq(decode_size(bytes, count, "x", &width, &height, &stored), RESULT_OK);
+    ck_assert(width == image.width && height == image.height);
     ck_assert_int_eq(stored, kind->channels == 1 ? 1 : 3);
     image_free(&image);
     for (size_t cut = 0; cut + 1 < count; cut++)

@@ -49,7 +49,7 @@ START_TEST(test_planes_of_grey)
     static const char *const names[] = {"Y", "Y,A", "R,G,B", "R,G,B,A"};
     for (int channels = 1; channels <= 4; channels++) {
         Planes planes;
-        ck_assert_int_eq(planes_from_image(&image, channels, 0, "image", &planes), RESULT_OK);
+        ck_assert_int_eq(planes_from_image(&image, channels, &planes), RESULT_OK);
         check_names(&planes, names[channels - 1]);
         ck_assert_uint_eq(planes.planes[0].bits[1], 8);
         if (channels % 2 == 0)
