@@ -100,9 +100,10 @@ static bool can_start(int count)
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
     pthread_t *threads = calloc((size_t)count, sizeof *threads);
     int started = 0;
+    if (!threads)
+        return false;
     pthread_mutex_lock(&gate);
-    while (threads && started < count &&
-           pthread_create(&threads[started], NULL, pass_through, &gate) == 0)
+    while (started < count && pthread_create(&threads[started], NULL, pass_through, &gate) == 0)
         started++;
     pthread_mutex_unlock(&gate);
     for (int i = 0; i < started; i++)

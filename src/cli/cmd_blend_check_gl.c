@@ -40,17 +40,17 @@ static BlendDriverDesc describe(const BlendCheckCommand *command, PixelFormat fo
                              .progress = show_progress};
 }
 
-/* Equation i of those that are run, NULL behind the last. */
-static const BlendEquation *equation_at(const BlendCheckCommand *command, int i)
+/* Equations that are run with format i. */
+static int equation_count(const BlendCheckCommand *command, int i)
 {
-    if (command->has_equation)
-        return i == 0 ? &command->equation : NULL;
-    return i < EQUATION_COUNT ? &equation_info((EquationId)i)->equation : NULL;
+    if (command->formats && !(command->formats >> i & 1))
+        return 0;
+    return command->has_equation ? 1 : EQUATION_COUNT;
 }
 
-static bool has_format(const BlendCheckCommand *command, int i)
+static const BlendEquation *equation_at(const BlendCheckCommand *command, int i)
 {
-    return !command->formats || command->formats >> i & 1;
+    return command->has_equation ? &command->equation : &equation_info((EquationId)i)->equation;
 }
 
 static Result run_one(GlRun *run, PixelFormat format, const BlendEquation *equation)
@@ -79,7 +79,7 @@ static uint64_t count_vectors(const BlendCheckCommand *command)
 {
     uint64_t all = 0;
     for (int i = 0; i < ARITHMETIC_FORMATS; i++)
-        for (int k = 0; has_format(command, i) && equation_at(command, k); k++) {
+        for (int k = 0; k < equation_count(command, i); k++) {
             BlendDriverDesc desc =
                 describe(command, arithmetic_formats[i], equation_at(command, k));
             all += blend_driver_vectors(&desc);
@@ -94,9 +94,7 @@ static Result run_all(GlRun *run)
     progress_begin("vectors", count_vectors(run->command));
     report_blend_row_head(stdout);
     for (int i = 0; i < ARITHMETIC_FORMATS; i++)
-        for (int k = 0;
-             has_format(run->command, i) && equation_at(run->command, k) && result == RESULT_OK;
-             k++)
+        for (int k = 0; k < equation_count(run->command, i) && result == RESULT_OK; k++)
             result = run_one(run, arithmetic_formats[i], equation_at(run->command, k));
     progress_end();
     return result;

@@ -13,19 +13,13 @@ static bool is_diagnostic(const char *name)
 }
 
 /* The row of this name: the latest, because a buffer's rectangles come one after another. */
-static BufferMetrics *find(const Against *against, const char *name)
-{
-    for (size_t i = against->count; i-- > 0;)
-        if (strcmp(against->buffers[i].name, name) == 0)
-            return &against->buffers[i];
-    return NULL;
-}
-
 static Result find_or_add(Against *against, const char *name, BufferMetrics **out)
 {
-    *out = find(against, name);
-    if (*out)
-        return RESULT_OK;
+    for (size_t i = against->count; i-- > 0;)
+        if (strcmp(against->buffers[i].name, name) == 0) {
+            *out = &against->buffers[i];
+            return RESULT_OK;
+        }
     Result result = memory_grow((void **)&against->buffers, &against->capacity, against->count + 1,
                                 sizeof *against->buffers);
     if (result != RESULT_OK)
@@ -41,7 +35,7 @@ static uint64_t value_count(PixelFormat format, int width, int height)
     return (uint64_t)width * (uint64_t)height * (uint64_t)format_info(format)->channels;
 }
 
-/* A buffer that only one side has: every value differs. */
+/* A buffer that the reference has not so: every value differs. */
 static void all_differ(BufferMetrics *metrics, PixelFormat format, int width, int height)
 {
     metrics->values = value_count(format, width, height);
@@ -50,7 +44,7 @@ static void all_differ(BufferMetrics *metrics, PixelFormat format, int width, in
     metrics->has_first = true;
 }
 
-/* Values of a shared buffer that never came differ too. */
+/* Values of the reference that never came differ too. */
 static void add_missing(BufferMetrics *metrics, const StoredBuffer *stored)
 {
     uint64_t expected = value_count(stored->format, stored->width, stored->height);
@@ -76,11 +70,8 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
     if (!stored || stored->format != buffer->format || stored->width != buffer->image_width ||
         stored->height != buffer->image_height) {
         all_differ(metrics, buffer->format, buffer->image_width, buffer->image_height);
-        if (stored)
-            against->seen[index] = true;
         return RESULT_OK;
     }
-    against->seen[index] = true;
     size_t row_bytes = (size_t)buffer->width * format_pixel_bytes(buffer->format);
     result =
         memory_grow((void **)&against->band, &against->band_capacity, row_bytes * TRACE_TILE, 1);
@@ -97,11 +88,9 @@ static Result put(TraceSink *sink, const TraceBuffer *buffer)
     return result;
 }
 
-Result against_create(const TraceStore *reference, Against *out)
+Against against_of(const TraceStore *reference)
 {
-    *out = (Against){.sink = {.put = put}, .reference = reference};
-    out->seen = memory_array((size_t)store_count(reference), sizeof *out->seen);
-    return out->seen ? RESULT_OK : RESULT_NO_MEMORY;
+    return (Against){.sink = {.put = put}, .reference = reference};
 }
 
 Result against_finish(Against *against)
@@ -110,15 +99,11 @@ Result against_finish(Against *against)
         const StoredBuffer *stored = store_buffer(against->reference, i);
         if (is_diagnostic(stored->name))
             continue;
-        if (against->seen[i]) {
-            add_missing(find(against, stored->name), stored);
-            continue;
-        }
         BufferMetrics *metrics;
         Result result = find_or_add(against, stored->name, &metrics);
         if (result != RESULT_OK)
             return result;
-        all_differ(metrics, stored->format, stored->width, stored->height);
+        add_missing(metrics, stored);
     }
     return RESULT_OK;
 }
@@ -126,7 +111,6 @@ Result against_finish(Against *against)
 void against_free(Against *against)
 {
     free(against->buffers);
-    free(against->seen);
     free(against->band);
     *against = (Against){0};
 }

@@ -11,13 +11,12 @@ typedef struct Against {
     const TraceStore *reference;
     BufferMetrics *buffers; /* in order of arrival; then what only the reference has */
     size_t count, capacity;
-    bool *seen; /* per buffer of the reference */
     unsigned char *band;
     size_t band_capacity;
 } Against;
 
 /* reference must outlive it. The caller closes with against_finish and against_free. */
-Result against_create(const TraceStore *reference, Against *out);
+Against against_of(const TraceStore *reference);
 
 /* Adds the buffers of the reference that never came (all their values differ) and counts the
  * values that a buffer's rectangles left out as differing; *.primitive buffers, which not every

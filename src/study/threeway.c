@@ -68,11 +68,10 @@ static Result trace_ref(Run *run)
 
 static Result trace_gl(Run *run)
 {
-    Against against;
+    Against against = against_of(run->ref_trace);
     Frame traced;
-    Result result = against_create(run->ref_trace, &against);
-    if (result == RESULT_OK)
-        result = render(run, RENDERER_GL, "gl, compared buffer by buffer", &against.sink, &traced);
+    Result result =
+        render(run, RENDERER_GL, "gl, compared buffer by buffer", &against.sink, &traced);
     if (result == RESULT_OK) {
         result = check_same(RENDERER_GL, &run->report->frames[RENDERER_GL], &traced);
         frame_free(&traced);

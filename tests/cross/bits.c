@@ -167,14 +167,12 @@ static size_t expected_buffers(const RenderDesc *desc, int peels)
 static Result compare_with(const Scene *scene, const RenderDesc *desc, const TraceStore *driver,
                            const Frame *frame, Bits *out)
 {
-    Against against;
+    Against against = against_of(driver);
     Frame ref = {0};
     RenderDesc modelled = *desc;
     modelled.ref_path = REF_PATH_DEFINITION;
     modelled.unfused = !frame->fused;
-    Result result = against_create(driver, &against);
-    if (result == RESULT_OK)
-        result = pipeline_render(scene, &modelled, &against.sink, &ref);
+    Result result = pipeline_render(scene, &modelled, &against.sink, &ref);
     if (result == RESULT_OK)
         result = against_finish(&against);
     out->fused = frame->fused;
@@ -222,12 +220,11 @@ uint64_t bits_between(Renderer renderer, const Scene *scene, const RenderDesc *a
                       const RenderDesc *b)
 {
     TraceStore *store;
-    Against against;
     Frame frames[2];
     uint64_t differing = 0;
     ok(store_create(0, &store));
     ok(renderer(scene, a, store_sink(store), &frames[0]));
-    ok(against_create(store, &against));
+    Against against = against_of(store);
     ok(renderer(scene, b, &against.sink, &frames[1]));
     ok(against_finish(&against));
     for (size_t i = 0; i < against.count; i++)

@@ -101,7 +101,7 @@ used=0
 : >"$log"
 while [ "$used" -lt "$what" ]; do
     left=$((what - used))
-    [ $left -lt 300 ] || left=300
+    [ $left -lt 900 ] || left=900
     # shellcheck disable=SC2046,SC2086 # lists of words
     (cd "$scratch/run" && exec nice -n 19 "$fuzzer" -fork=1 -ignore_crashes=1 -ignore_ooms=1 \
         -ignore_timeouts=1 -detect_leaks=$leaks -max_total_time="$left" -timeout=25 -report_slow_units=25 \

@@ -23,7 +23,7 @@ static void setup(void)
     trace_put(sink, "opaque.normal", 0, FORMAT_RGBA32F, WIDTH, HEIGHT, values);
     trace_put(sink, "opaque.primitive", 0, FORMAT_R32UI, WIDTH, HEIGHT, values);
     trace_put(sink, "accum", 1, FORMAT_RGBA32F, WIDTH, HEIGHT, values);
-    ck_assert_int_eq(against_create(reference, &against), RESULT_OK);
+    against = against_of(reference);
 }
 
 static void teardown(void)

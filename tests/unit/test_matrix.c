@@ -218,6 +218,7 @@ int main(void)
 {
     Suite *suite = suite_create("matrix");
     TCase *test = tcase_create("matrix");
+    tcase_add_checked_fixture(test, NULL, mpfr_free_cache); /* in thread-local storage */
     tcase_set_timeout(test, 120);
     tcase_add_test(test, trigonometry_error);
     tcase_add_test(test, trigonometry_exact_points);

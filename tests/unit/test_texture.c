@@ -145,6 +145,7 @@ int main(void)
 {
     Suite *suite = suite_create("texture");
     TCase *test = tcase_create("texture");
+    tcase_add_checked_fixture(test, NULL, mpfr_free_cache); /* in thread-local storage */
     tcase_set_timeout(test, 120);
     tcase_add_test(test, every_texel_is_correctly_rounded);
     tcase_add_test(test, alpha_is_linear);
