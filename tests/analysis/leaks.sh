@@ -13,7 +13,7 @@ set -u
 
 build sanitize-gcc
 export ASAN_OPTIONS="log_path=$logs/report:detect_leaks=1"
-export LSAN_OPTIONS=use_tls=0
+export LSAN_OPTIONS="use_tls=0:suppressions=$here/leaks.supp:print_suppressions=0"
 export UBSAN_OPTIONS="log_path=$logs/report:print_stacktrace=1"
 export CK_TIMEOUT_MULTIPLIER=10
 run_tests "^($uninstrumented)\$"
