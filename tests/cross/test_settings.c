@@ -1,8 +1,9 @@
 /* ref/pipeline against OpenGL: scenes × settings × sizes, every buffer bit for bit.
  *
  * Prints a line of differing values per scene and setting, one number per size. The settings are
- * the default, each single change of it, and the original's profile. PEEL_TEST_FULL=1: all sizes;
- * without it the small one, and for the default the others but the largest. */
+ * the default, each single change of it, and the original's profile. PEEL_TEST_FULL=1: everything;
+ * without it the default in all sizes but the largest, and every other scene of each change, in the
+ * small one. */
 #include "bits.h"
 #include "testing.h"
 
@@ -91,25 +92,27 @@ static void load(const NamedScene *from, Scene *out)
             out->materials[i].alpha_mode = ALPHA_MASK;
 }
 
-static bool is_wanted(int setting, int size)
+static bool is_wanted(int scene, int setting, int size)
 {
     const char *full = getenv("PEEL_TEST_FULL");
     if (full && strcmp(full, "1") == 0)
         return true;
-    return size == SLICE_SIZE || (setting == 0 && size != SIZES - 1);
+    if (setting == 0)
+        return size != SIZES - 1;
+    return size == SLICE_SIZE && (scene + setting) % 2 == 0;
 }
 
 /* One line of the matrix; returns the differing values. */
-static uint64_t run_setting(const Scene *scene, const char *name, int number)
+static uint64_t run_setting(const Scene *scene, int scene_number, int number)
 {
     const Setting *setting = &settings[number];
     uint64_t values = 0, differing = 0;
     Bits bits = {0};
     char first[sizeof bits.difference] = "";
-    printf("%-22s %-21s", name, setting->name);
+    printf("%-22s %-21s", scenes[scene_number].name, setting->name);
     for (int size = 0; size < SIZES; size++) {
         RenderDesc desc = setting->desc;
-        if (!is_wanted(number, size)) {
+        if (!is_wanted(scene_number, number, size)) {
             printf(" %9s", "-");
             continue;
         }
@@ -156,7 +159,7 @@ START_TEST(test_scene)
         print_head();
     load(&scenes[_i], &scene);
     for (int setting = 0; setting < SETTINGS; setting++)
-        differing += run_setting(&scene, scenes[_i].name, setting);
+        differing += run_setting(&scene, _i, setting);
     scene_free(&scene);
     ck_assert_uint_eq(differing, 0);
 }
