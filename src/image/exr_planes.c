@@ -253,10 +253,21 @@ Result exr_file_planes(ExrFile *file, int part, size_t max_bytes, Planes *out)
 
 /* ---- writing ---- */
 
+/* Readers know by a flag of the file that its names may have more than 31 bytes, up to 255. */
+static bool has_long_name(const Planes *planes)
+{
+    for (int i = 0; i < planes->count; i++)
+        if (strlen(planes->planes[i].name) > 31)
+            return true;
+    return false;
+}
+
 static exr_result_t write_header(exr_context_t context, const Planes *planes)
 {
     int part;
-    exr_result_t code = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
+    exr_result_t code = exr_set_longname_support(context, has_long_name(planes));
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(context, part, planes->width, planes->height,
                                                    EXR_COMPRESSION_ZIP);

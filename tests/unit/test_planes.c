@@ -7,7 +7,7 @@
 
 static void check_names(const Planes *planes, const char *expected)
 {
-    char names[64] = "";
+    char names[300] = "";
     for (int i = 0; i < planes->count; i++) {
         strcat(names, i ? "," : "");
         strcat(names, planes->planes[i].name);
@@ -100,10 +100,14 @@ START_TEST(test_formats)
 }
 END_TEST
 
+static const int name_lengths[] = {1, 31, 32, 255};
+
 /* Any names, written and read; the order is R, G, B, A, then as files have it. */
 START_TEST(test_write)
 {
-    static const char *const names[] = {"Z", "left.R", "G"};
+    char names[3][256] = {"Z", "left.R", "G"}, order[300];
+    memset(names[0], 'Z', (size_t)name_lengths[_i]);
+    snprintf(order, sizeof order, "G,%s,left.R", names[0]);
     const char *path = scratch_path("planes.exr");
     Planes planes;
     ck_assert_int_eq(planes_create(5, 33, 3, 0, "planes", &planes), RESULT_OK);
@@ -114,7 +118,7 @@ START_TEST(test_write)
     }
     ck_assert_msg(exr_planes_write(&planes, path) == RESULT_OK, "%s", result_message());
     Planes back = read_part(path, 0);
-    check_names(&back, "G,Z,left.R");
+    check_names(&back, order);
     for (int i = 0; i < 5 * 33; i++)
         for (int c = 0; c < 3; c++)
             ck_assert_uint_eq(back.planes[planes_find(&back, names[c])].bits[i],
@@ -164,7 +168,7 @@ int main(void)
     tcase_add_test(tcase, test_planes);
     tcase_add_test(tcase, test_planes_of_grey);
     tcase_add_test(tcase, test_formats);
-    tcase_add_test(tcase, test_write);
+    tcase_add_loop_test(tcase, test_write, 0, sizeof name_lengths / sizeof *name_lengths);
     tcase_add_test(tcase, test_parts);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
