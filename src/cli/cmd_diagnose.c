@@ -105,17 +105,17 @@ static int run(DiagnoseCommand *command)
     GivenImage given = {0};
     Diagnosis diagnosis = {0};
     int code = 0;
+    const int size[] = {command->render.desc.width, command->render.desc.height};
     Result result = check(command);
     if (result == RESULT_OK)
-        result = given_load(command->image, &given);
+        result = given_load(command->image, size, &given);
     if (result != RESULT_OK) {
         given_free(&given);
         return options_fail(result);
     }
     result = options_load_scene(&command->render, &scene);
     if (result == RESULT_OK) {
-        code = options_given_size(command->image, &given, command->render.desc.width,
-                                  command->render.desc.height);
+        code = options_given_size(command->image, &given, size[0], size[1]);
         result = code ? RESULT_OK : diagnose(command, &scene, &given, &diagnosis);
         scene_free(&scene);
     }

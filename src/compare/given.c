@@ -32,7 +32,7 @@ const char *given_alpha_name(GivenAlpha alpha)
 
 /* ---- files ---------------------------------------------------------------------------------- */
 
-static Result load_png(const char *path, GivenImage *out)
+static Result load_png(const char *path, const int size[2], GivenImage *out)
 {
     unsigned char *bytes;
     size_t count;
@@ -41,7 +41,9 @@ static Result load_png(const char *path, GivenImage *out)
         return result;
     int width, height, channels = 0;
     result = decode_size(bytes, count, path, &width, &height, &channels);
-    if (result == RESULT_OK)
+    if (result == RESULT_OK && size && (width != size[0] || height != size[1]))
+        out->stored = (Image){.width = width, .height = height};
+    else if (result == RESULT_OK)
         result = decode_image(bytes, count, path, &out->stored);
     out->kind = "PNG";
     out->has_alpha = channels % 2 == 0;
@@ -49,11 +51,11 @@ static Result load_png(const char *path, GivenImage *out)
     return result;
 }
 
-static Result load_exr(const char *path, GivenImage *out)
+static Result load_exr(const char *path, const int size[2], GivenImage *out)
 {
     char name[64];
     out->kind = "EXR";
-    Result result = exr_read(path, 0, &out->stored, name);
+    Result result = exr_read_sized(path, 0, size, &out->stored, name);
     if (result != RESULT_OK)
         return result;
     if (format_info(out->stored.format)->channels != 4) {
@@ -79,7 +81,7 @@ static void count_nonfinite(GivenImage *given)
     }
 }
 
-Result given_load(const char *path, GivenImage *out)
+Result given_load(const char *path, const int size[2], GivenImage *out)
 {
     bool exr;
     char magic[4];
@@ -91,16 +93,16 @@ Result given_load(const char *path, GivenImage *out)
     if (result != RESULT_OK)
         return result;
     if (exr)
-        result = load_exr(path, out);
+        result = load_exr(path, size, out);
     else if (count == 4 && memcmp(magic, "\x89PNG", 4) == 0)
-        result = load_png(path, out);
+        result = load_png(path, size, out);
     else
         result =
             result_fail(RESULT_BAD_INPUT, "%s: neither PNG nor EXR, expected one of them", path);
-    if (result == RESULT_OK)
-        count_nonfinite(out);
-    else
+    if (result != RESULT_OK)
         given_free(out);
+    else if (out->stored.pixels)
+        count_nonfinite(out);
     return result;
 }
 

@@ -55,9 +55,10 @@ const char *given_encoding_name(GivenEncoding encoding);
 const char *given_alpha_name(GivenAlpha alpha);
 
 /* Reads a PNG of 8 or 16 bits or a flat EXR with R, G and B in its first part, whatever else it
- * has. BAD_INPUT, UNSUPPORTED or IO with a message naming path; the caller frees with given_free.
- */
-Result given_load(const char *path, GivenImage *out);
+ * has. Of an image that has not this width and height (NULL: of none) only these are read: stored
+ * has no pixels. BAD_INPUT, UNSUPPORTED or IO with a message naming path; the caller frees with
+ * given_free. */
+Result given_load(const char *path, const int size[2], GivenImage *out);
 void given_free(GivenImage *given); /* leaves an empty one */
 
 /* Finds out what `options` leaves to be detected. reference: FORMAT_RGBA32F, linear over the

@@ -34,6 +34,9 @@ Result exr_write_at(const Image *image, const ImageWindow *window, const char *p
 /* Reads what the writer above makes, and any scanline file with channels R, G, B (A) or one
  * channel. part: index. The caller frees *out; name receives the part's name ("" if none). */
 Result exr_read(const char *path, int part, Image *out, char name[64]);
+/* The same, but of an image that has not this width and height (NULL: of none) only these and the
+ * format are read: *out has no pixels. */
+Result exr_read_sized(const char *path, int part, const int size[2], Image *out, char name[64]);
 Result exr_part_count(const char *path, int *count);
 /* Whether the file begins as EXR files do; IO or BAD_INPUT when it cannot be read. */
 Result exr_is(const char *path, bool *is);

@@ -162,7 +162,7 @@ static void fill_alpha(const exr_attr_chlist_t *list, Image *image)
             ((uint16_t *)image->pixels)[4 * i + 3] = 0x3c00;
 }
 
-static Result read_part(const ExrReader *reader, int part, Image *out)
+static Result read_part(const ExrReader *reader, int part, const int *size, Image *out)
 {
     PixelFormat format = FORMAT_RGBA32F;
     Result result = part_format(reader, part, &format);
@@ -183,6 +183,10 @@ static Result read_part(const ExrReader *reader, int part, Image *out)
     if (width < 1 || width > EXR_SIZE_MAX || height < 1 || height > EXR_SIZE_MAX || chunk_rows < 1)
         return result_fail(RESULT_BAD_INPUT, "%s: part %d has a size that is not 1 to %d pixels",
                            reader->path, part, (int)EXR_SIZE_MAX);
+    if (size && (width != size[0] || height != size[1])) {
+        *out = (Image){.width = (int)width, .height = (int)height, .format = format};
+        return RESULT_OK;
+    }
     result = image_create((int)width, (int)height, format, out);
     if (result != RESULT_OK)
         return result;
@@ -260,7 +264,7 @@ Result exr_has_channel(const char *path, int part, const char *channel, bool *ha
     return result;
 }
 
-Result exr_read(const char *path, int part, Image *out, char name[64])
+Result exr_read_sized(const char *path, int part, const int size[2], Image *out, char name[64])
 {
     *out = (Image){0};
     name[0] = 0;
@@ -274,11 +278,16 @@ Result exr_read(const char *path, int part, Image *out, char name[64])
         result =
             result_fail(RESULT_BAD_INPUT, "%s: no part %d, the file has %d", path, part, count);
     else
-        result = read_part(&reader, part, out);
+        result = read_part(&reader, part, size, out);
     if (result != RESULT_OK)
         image_free(out);
     else
         copy_name(&reader, part, name);
     exr_reader_close(&reader);
     return result;
+}
+
+Result exr_read(const char *path, int part, Image *out, char name[64])
+{
+    return exr_read_sized(path, part, NULL, out, name);
 }

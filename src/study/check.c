@@ -31,7 +31,8 @@ static Result size_failure(const CheckRun *run, const char *path, const char *bu
 
 static Result load_image(const CheckRun *run, const char *path, GivenImage *out)
 {
-    Result result = given_load(path, out);
+    const int size[] = {run->desc.width, run->desc.height};
+    Result result = given_load(path, size, out);
     if (result != RESULT_OK)
         return result;
     if (out->stored.width == run->desc.width && out->stored.height == run->desc.height)
@@ -54,16 +55,17 @@ static Result load_trace(CheckRun *run, const char *path)
 
 static Result load_depth(const CheckRun *run, const char *path, Image *out)
 {
+    const int size[] = {run->desc.width, run->desc.height};
     bool exr;
     char name[64];
     Result result = exr_is(path, &exr);
     if (result != RESULT_OK)
         return result;
     if (exr) {
-        result = exr_read(path, 0, out, name);
+        result = exr_read_sized(path, 0, size, out, name);
     } else {
         GivenImage given; /* of grey, each channel has the value */
-        result = given_load(path, &given);
+        result = given_load(path, size, &given);
         *out = given.stored;
     }
     if (result != RESULT_OK)

@@ -60,7 +60,7 @@ static void read_given(const char *path)
     GivenImage given;
     GivenReading reading, again;
     char text[256];
-    if (given_load(path, &given) != RESULT_OK) {
+    if (given_load(path, NULL, &given) != RESULT_OK) {
         fuzz_check_message();
         FUZZ_CHECK(!given.stored.pixels, "pixels after a failure");
         return;

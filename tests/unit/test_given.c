@@ -75,7 +75,15 @@ static GivenImage through_file(const Image *reference, PixelFormat format,
         ck_assert_int_eq(exr_write(&stored, path), RESULT_OK);
     image_free(&stored);
     GivenImage given;
-    ck_assert_msg(given_load(path, &given) == RESULT_OK, "%s", result_message());
+    const int size[] = {reference->width, reference->height};
+    const int others[][2] = {{size[0] + 1, size[1]}, {size[0], size[1] - 1}};
+    for (int i = 0; i < 2; i++) {
+        ck_assert_int_eq(given_load(path, others[i], &given), RESULT_OK);
+        ck_assert(given.stored.width == size[0] && given.stored.height == size[1]);
+        ck_assert_ptr_null(given.stored.pixels);
+        given_free(&given);
+    }
+    ck_assert_msg(given_load(path, size, &given) == RESULT_OK, "%s", result_message());
     ck_assert_int_eq(given.stored.format, format);
     ck_assert_str_eq(given.kind, format == FORMAT_RGBA8 ? "PNG" : "EXR");
     ck_assert(given.has_alpha);
@@ -169,7 +177,7 @@ START_TEST(test_nonfinite)
     *(float *)image_pixel(&image, 3, 4) = NAN;
     ((float *)image_pixel(&image, 5, 6))[3] = INFINITY;
     ck_assert_int_eq(exr_write(&image, scratch_path("a.exr")), RESULT_OK);
-    ck_assert_int_eq(given_load(scratch_path("a.exr"), &given), RESULT_OK);
+    ck_assert_int_eq(given_load(scratch_path("a.exr"), NULL, &given), RESULT_OK);
     ck_assert_uint_eq(given.nonfinite, 2);
     GivenReading reading;
     ck_assert_int_eq(given_interpret(&given, &image, &(GivenMeaning){0}, &reading), RESULT_OK);
@@ -211,7 +219,7 @@ END_TEST
 static void assert_refused(const char *path, Result expected, const char *message)
 {
     GivenImage given;
-    ck_assert_int_eq(given_load(path, &given), expected);
+    ck_assert_int_eq(given_load(path, NULL, &given), expected);
     ck_assert_ptr_null(given.stored.pixels);
     ck_assert_msg(strstr(result_message(), path) && strstr(result_message(), message), "%s",
                   result_message());
