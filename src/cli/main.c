@@ -7,6 +7,7 @@
 #include "cli/options.h"
 #include "cli/version.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <gmp.h>
 #include <signal.h>
@@ -74,8 +75,10 @@ static void clean_up(void)
 
 static void on_signal(int number)
 {
+    int error = errno;
     clean_up();
-    raise(number); /* SA_RESETHAND: ends the program as the signal does */
+    raise(number); /* SA_RESETHAND: ends the program as the signal does, once it is not blocked */
+    errno = error;
 }
 
 static void handle_signals(void)
