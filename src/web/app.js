@@ -15,6 +15,7 @@ const app = {
     makeSteps: () => [],
     listeners: {},
     linkTimer: null,
+    followed: 0, /* addresses so far */
     linkTime: 0, /* when it was written last */
     links: [], /* further parts of the address: see permalink */
     stale: false,
@@ -31,9 +32,9 @@ app.start = async () => {
         await app.check();
         await sides.open();
         app.showHead();
-        await app.follow();
+        await app.follow(location.hash);
         document.body.dataset.state = "ready";
-        addEventListener("hashchange", () => app.follow());
+        addEventListener("hashchange", (event) => app.follow(new URL(event.newURL).hash));
     } catch (error) {
         app.fail(error);
     }
@@ -137,9 +138,9 @@ app.change = async ({ step, pixel, view, ...settings }) => {
         app.view = view;
         told.push("view");
     }
-    try {
-        if (app.stale && app.view !== "live")
-            await app.refresh();
+    try { /* an earlier change may still wait for its frame, and comes first */
+        if ((app.stale || app.refreshing) && app.view !== "live")
+            await (app.stale ? app.refresh() : app.refreshing);
     } catch (error) {
         app.say(error.message);
     }
@@ -288,9 +289,13 @@ app.writeLink = () => {
     }, app.linkTime + 200 - performance.now());
 };
 
-/* Goes where the address says. What it does not name is as carried. */
-app.follow = async () => {
-    const parts = new URLSearchParams(location.hash.slice(1));
+/* Goes where an address says: not where location says, which writeLink may have replaced since. What
+ * it does not name is as carried. Of two that follow each other closely the last one counts. */
+app.follow = async (hash) => {
+    const turn = ++app.followed;
+    clearTimeout(app.linkTimer);
+    app.linkTimer = null;
+    const parts = new URLSearchParams(hash.slice(1));
     const wanted = { view: "steps", step: 0, pixel: app.deepestPixel() };
     const now = app.copySettings();
     for (const [name, value] of Object.entries(app.carried))
@@ -300,7 +305,8 @@ app.follow = async () => {
         app.followPart(name, text, wanted);
     for (const link of app.links)
         await link.set(parts.get(link.name) ?? "");
-    await app.change(wanted);
+    if (turn === app.followed)
+        await app.change(wanted);
 };
 
 /* Where most layers are, of those the nearest to the middle: worth looking at first. */
