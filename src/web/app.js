@@ -16,6 +16,7 @@ const app = {
     listeners: {},
     linkTimer: null,
     followed: 0, /* addresses so far */
+    following: Promise.resolve(),
     linkTime: 0, /* when it was written last */
     links: [], /* further parts of the address: see permalink */
     stale: false,
@@ -289,12 +290,19 @@ app.writeLink = () => {
     }, app.linkTime + 200 - performance.now());
 };
 
-/* Goes where an address says: not where location says, which writeLink may have replaced since. What
- * it does not name is as carried. Of two that follow each other closely the last one counts. */
-app.follow = async (hash) => {
+/* Goes where an address says: not where location says, which writeLink may have replaced since. One
+ * after the other, because each looks at what is set; of those that wait the last one counts. */
+app.follow = (hash) => {
     const turn = ++app.followed;
     clearTimeout(app.linkTimer);
     app.linkTimer = null;
+    app.following = app.following.catch(() => {}).then(() =>
+        turn === app.followed ? app.go(hash) : undefined);
+    return app.following;
+};
+
+/* What the address does not name is as carried. */
+app.go = async (hash) => {
     const parts = new URLSearchParams(hash.slice(1));
     const wanted = { view: "steps", step: 0, pixel: app.deepestPixel() };
     const now = app.copySettings();
@@ -305,8 +313,7 @@ app.follow = async (hash) => {
         app.followPart(name, text, wanted);
     for (const link of app.links)
         await link.set(parts.get(link.name) ?? "");
-    if (turn === app.followed)
-        await app.change(wanted);
+    await app.change(wanted);
 };
 
 /* Where most layers are, of those the nearest to the middle: worth looking at first. */
