@@ -65,7 +65,7 @@ static RenderDesc desc;
 
 static void choose(void)
 {
-    bool full = getenv("PEEL_TEST_FULL") != NULL;
+    bool full = testing_full();
     columns = full ? full_columns : ci_columns;
     column_count = full ? COLUMNS_FULL : 2;
     desc = (RenderDesc){.width = full ? 96 : 48, .height = full ? 72 : 36, .lights = 8};

@@ -18,7 +18,7 @@ static RenderDesc desc;
 
 static void choose(void)
 {
-    bool full = getenv("PEEL_TEST_FULL") != NULL;
+    bool full = testing_full();
     scene_count = full ? 8 : 2;
     other_count = full ? 4 : 1;
     desc = (RenderDesc){.width = full ? 96 : 48, .height = full ? 72 : 36, .lights = 8};

@@ -64,7 +64,7 @@ START_TEST(test_soup)
     uint64_t fragments = 0;
     desc.width = 97;
     desc.height = 61;
-    for (uint64_t seed = 1; seed <= 2; seed++) {
+    for (uint64_t seed = 1; seed <= (testing_full() ? 3 : 2); seed++) {
         make_soup(seed * 100 + (uint64_t)_i, &soup);
         fragments += compare(&soup.scene, &desc).fragments;
     }

@@ -78,7 +78,7 @@ END_TEST
 START_TEST(test_scenes_with_opaque_surfaces)
 {
     RenderDesc desc = {.width = 48, .height = 27, .lights = 3, .method = (MethodId)_i, .passes = 3};
-    check("lamps", &desc);
+    check(testing_full() ? "teapot_hall" : "lamps", &desc);
 }
 END_TEST
 

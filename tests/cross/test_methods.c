@@ -324,10 +324,12 @@ static uint64_t check_order(Renderer renderer, const Scene *scene, const RenderD
     return reversed + shuffled;
 }
 
-/* gl takes its time, and its bits are ref's: it draws every other scene of few triangles. */
+/* gl takes its time, and its bits are ref's: of the scenes of few triangles it draws every other,
+ * or with PEEL_TEST_FULL all. */
 static bool draws(Renderer renderer, const Scene *scene, int turn)
 {
-    return renderer == pipeline_render || (turn % 2 == 0 && scene_triangle_count(scene) < 20000);
+    return renderer == pipeline_render ||
+           ((testing_full() || turn % 2 == 0) && scene_triangle_count(scene) < 20000);
 }
 
 /* Of any kind, in a window that suits all. */

@@ -94,8 +94,7 @@ static void load(const NamedScene *from, Scene *out)
 
 static bool is_wanted(int scene, int setting, int size)
 {
-    const char *full = getenv("PEEL_TEST_FULL");
-    if (full && strcmp(full, "1") == 0)
+    if (testing_full())
         return true;
     if (setting == 0)
         return size != SIZES - 1;

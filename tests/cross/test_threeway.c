@@ -103,7 +103,7 @@ START_TEST(test_shading_options)
     static const char *const names[] = {"teapot_hall", "tutorial", "chain"};
     Scene scene = generate(names[_i % 3]);
     bool seed = _i >= 3;
-    for (int options = seed ? 3 : 1; options < 4; options++) {
+    for (int options = seed && !testing_full() ? 3 : 1; options < 4; options++) {
         RenderDesc desc = {.width = WIDTH, .height = HEIGHT, .lights = 16};
         if (seed)
             render_desc_seed_profile(&desc);

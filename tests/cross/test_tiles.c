@@ -86,7 +86,7 @@ enum {
 /* All instructions, thread counts and sizes of tiles of one scene and kind. */
 START_TEST(test_variants)
 {
-    int step = getenv("PEEL_TEST_FULL") ? 1 : 3;
+    int step = testing_full() ? 1 : 3;
     size_t count;
     const BuiltinScene *builtin = &generate_table(&count)[_i / KINDS];
     Scene scene;

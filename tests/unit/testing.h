@@ -3,6 +3,7 @@
 #define PEEL_TESTS_TESTING_H
 
 #include <check.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,12 @@ __attribute__((constructor)) static void testing_be_patient(void)
 static inline int testing_samples(int count)
 {
     return (count + TESTING_SHARE - 1) / TESTING_SHARE;
+}
+
+/* Whether a test takes all of its cases: PEEL_TEST_FULL is set. CI has a part of the longest. */
+static inline bool testing_full(void)
+{
+    return getenv("PEEL_TEST_FULL") != NULL;
 }
 
 static inline uint32_t testing_bits(float x)
