@@ -21,6 +21,9 @@ const app = {
     links: [], /* further parts of the address: see permalink */
     stale: false,
     refreshing: null,
+    working: 0, /* changes and frames that are not there yet: body's data-busy */
+    asked: {}, /* what changes name -> the last change that named it */
+    setting: Promise.resolve(), /* the settings of the last change */
 };
 
 const VIEWS = ["steps", "live", "space"];
@@ -127,30 +130,46 @@ app.tell = (...whats) => {
 /* ---- changes ---- */
 
 /* step: index or id; pixel: [x, y] or null; view; anything else is a setting: an index or a name
- * of a choice, a number, size [w, h]. Resolves when the new frame, if one is needed, is there. */
-app.change = async ({ step, pixel, view, ...settings }) => {
-    const told = [];
+ * of a choice, a number, size [w, h]. Resolves when the new frame, if one is needed, is there. Of
+ * changes that overlap each waits for the settings and the frame of those before it, and what a
+ * later one names is the later one's. */
+app.change = async (wanted) => {
+    const { step, pixel, view, ...settings } = wanted, told = [];
+    for (const name of Object.keys(wanted))
+        app.asked[name] = wanted;
+    const decides = (name) => wanted[name] !== undefined && app.asked[name] === wanted;
     app.say("");
+    app.work(1);
     if (Object.keys(settings).length > 0) {
-        await app.set(settings);
+        app.setting = app.setting.then(() => app.set(settings));
         told.push("settings");
     }
-    if (view !== undefined && VIEWS.includes(view) && view !== app.view) {
+    await app.setting;
+    if (decides("view") && VIEWS.includes(view) && view !== app.view) {
         app.view = view;
         told.push("view");
     }
-    try { /* an earlier change may still wait for its frame, and comes first */
+    try {
         if ((app.stale || app.refreshing) && app.view !== "live")
             await (app.stale ? app.refresh() : app.refreshing);
     } catch (error) {
         app.say(error.message);
     }
-    if (step !== undefined && app.toStep(step))
+    if (decides("step") && app.toStep(step))
         told.push("step");
-    if (pixel !== undefined && app.toPixel(pixel))
+    if (decides("pixel") && app.toPixel(pixel))
         told.push("pixel");
+    app.work(-1);
     app.writeLink();
     app.tell(...told);
+};
+
+app.work = (by) => {
+    app.working += by;
+    if (app.working > 0)
+        document.body.dataset.busy = "true";
+    else
+        delete document.body.dataset.busy;
 };
 
 /* Each by itself: one that is refused leaves the others. */
@@ -200,15 +219,18 @@ app.refresh = () => {
 };
 
 app.renderStale = async () => {
-    document.body.dataset.busy = "true";
-    while (app.stale) {
-        app.stale = false;
-        const [scene, frame] = await Promise.all([
-            app.engine.scene(), app.engine.render(...app.settings.size, true)]);
-        app.scene = scene;
-        app.useFrame(frame);
+    app.work(1);
+    try {
+        while (app.stale) {
+            app.stale = false;
+            const [scene, frame] = await Promise.all([
+                app.engine.scene(), app.engine.render(...app.settings.size, true)]);
+            app.scene = scene;
+            app.useFrame(frame);
+        }
+    } finally {
+        app.work(-1);
     }
-    delete document.body.dataset.busy;
     app.tell("scene", "frame", "step", "pixel");
 };
 

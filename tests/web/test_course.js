@@ -127,11 +127,13 @@ async function testLinks(page, where) {
         await ready(page);
         await page.waitForFunction(([step, view, method, focus]) =>
             (!step || app.steps[app.step].id === step) && (!view || app.view === view) &&
-            (!method || app.settings.method.choices[app.settings.method.value] === method) &&
+            (!method || app.choice("method") === method) &&
             (!focus || document.activeElement.id === focus),
             ["step", "view", "method", "focus"].map((name) => wanted.get(name)),
             { timeout: WAIT_MS })
-            .catch(() => assert.fail(`${where}: "${wanted}" leads nowhere`));
+            .catch(async () => assert.fail(`${where}: "${wanted}" leads to ` + await page.evaluate(
+                () => `${app.steps[app.step].id} of ${app.choice("method")}, ${app.view}, at ` +
+                      `${location.hash}, "${document.activeElement.id}"`)));
     }
 }
 

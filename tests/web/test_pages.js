@@ -249,6 +249,34 @@ async function testAddresses(browser) {
     fs.rmSync(folder, { recursive: true });
 }
 
+/* Changes that overlap: what the later one names holds, once the earlier one's frame is there. */
+async function testOverlaps(browser) {
+    const folder = fs.mkdtempSync(path.join(os.tmpdir(), "peel-pages-"));
+    makePage("chain", folder);
+    const page = await open(browser, path.join(folder, "index.html"));
+    const cases = [
+        [{ method: "forward", step: "light" }, { step: "peel-0-gbuffer" }],
+        [{ method: "peel", step: "peel-1-light", pixel: [1, 2] }, { step: "light" }],
+        [{ method: "linked-list" }, { step: "nodes" }],
+        [{ lights: 2, view: "live" }, { view: "steps", pixel: [3, 4] }],
+        [{ method: "peel", passes: 2 }, { method: "dual", step: "display" }],
+    ];
+    for (const [first, second] of cases) {
+        const now = await page.evaluate(async (both) => {
+            await Promise.all(both.map((one) => app.change(one)));
+            return { method: app.choice("method"), step: app.steps[app.step].id, view: app.view,
+                     lights: app.settings.lights, passes: app.settings.passes,
+                     pixel: app.pixel };
+        }, [first, second]);
+        const wanted = { ...first, ...second };
+        assert.deepEqual(Object.fromEntries(Object.keys(wanted).map((name) => [name, now[name]])),
+                         wanted);
+        assert.equal(await page.evaluate(() => document.body.dataset.busy), undefined);
+    }
+    await close(page);
+    fs.rmSync(folder, { recursive: true });
+}
+
 async function main() {
     const scenes = execFileSync(peel, ["scenes"], { encoding: "utf8" }).split("\n").filter(Boolean)
         .map((line) => line.split(" ")[0]);
@@ -259,6 +287,7 @@ async function main() {
             console.log(`${scene}: ${total} numbers, all the program's (${Date.now() - start} ms)`);
         }
         await testAddresses(browser);
+        await testOverlaps(browser);
         const start = Date.now(), total = await testMethods(browser, "tutorial");
         console.log(`methods: ${total} numbers, all the program's (${Date.now() - start} ms)`);
     } finally {
