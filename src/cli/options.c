@@ -152,7 +152,8 @@ bool options_integer(const char *text, long long low, long long high, long long 
     char *end;
     errno = 0;
     long long value = strtoll(text, &end, 10);
-    if (errno || end == text || *end || value < low || value > high)
+    if (errno || isspace((unsigned char)*text) || end == text || *end || value < low ||
+        value > high)
         return false;
     *out = value;
     return true;
@@ -162,7 +163,7 @@ bool options_real(const char *text, double low, double high, double *out)
 {
     char *end;
     double value = strtod(text, &end);
-    if (end == text || *end || !(value >= low && value <= high))
+    if (isspace((unsigned char)*text) || end == text || *end || !(value >= low && value <= high))
         return false;
     *out = value;
     return true;

@@ -4,6 +4,7 @@
 #include "frame/method.h"
 #include "gl/context.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -53,7 +54,7 @@ error_t options_memory(const char *text, size_t *out)
     errno = 0;
     unsigned long long bytes = strtoull(text, &end, 10);
     int shift = *end == 'K' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
-    if (errno || end == text || *text == '-' || bytes == 0 || end[shift != 0] ||
+    if (errno || !isdigit((unsigned char)*text) || bytes == 0 || end[shift != 0] ||
         bytes > (SIZE_MAX >> shift))
         return options_error("--max-memory %s: expected bytes, or a number with K, M or G", text);
     *out = (size_t)bytes << shift;

@@ -104,6 +104,10 @@ out="-o out.png"
     refuse 'memory' 'max-memory' render tutorial $out --size 4096x4096 --max-memory 1M
     refuse 'memory, gl' 'max-memory' render tutorial $out --with gl --size 4096x4096 --max-memory 1M
     refuse 'memory, truth' 'max-memory' render tutorial $out --with truth --size 4096x4096 --max-memory 1K
+    refuse 'memory below nothing' '--max-memory  -1: expected bytes' render tutorial $out --max-memory ' -1'
+    refuse 'memory with a sign' '--max-memory +1: expected bytes' render tutorial $out --max-memory +1
+    refuse 'a blank' '--lights  4: expected a whole number' render tutorial $out --lights ' 4'
+    refuse 'a blank, real' '--time  4: expected a number' render tutorial $out --time ' 4'
     refuse 'unknown option' 'bogus' render tutorial $out --bogus
     refuse 'hidden option' 'HANG' render tutorial $out --HANG
     refuse 'hidden option' 'usage' compare --usage tutorial
