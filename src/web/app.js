@@ -325,6 +325,7 @@ app.follow = (hash) => {
 
 /* What the address does not name is as carried. */
 app.go = async (hash) => {
+    await app.setting;
     const parts = new URLSearchParams(hash.slice(1));
     const wanted = { view: "steps", step: 0, pixel: app.deepestPixel() };
     const now = app.copySettings();

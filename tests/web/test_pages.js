@@ -273,6 +273,12 @@ async function testOverlaps(browser) {
                          wanted);
         assert.equal(await page.evaluate(() => document.body.dataset.busy), undefined);
     }
+    const back = await page.evaluate(async () => {
+        await app.follow("#step=naive");
+        await Promise.all([app.change({ lights: 3 }), app.follow("#step=light")]);
+        return [app.settings.lights === app.carried.lights, app.steps[app.step].id];
+    });
+    assert.deepEqual(back, [true, "light"], "an address, of what it does not name");
     await close(page);
     fs.rmSync(folder, { recursive: true });
 }
