@@ -20,6 +20,7 @@
 #include <immintrin.h>
 #define OP_HARDWARE_FLUSH 1
 #else
+#include <fenv.h>
 #define OP_HARDWARE_FLUSH 0
 #endif
 
@@ -39,9 +40,9 @@ static inline float op_from_bits(uint32_t bits)
 
 /* ---- environment ---------------------------------------------------------------------------- */
 
-/* Puts the calling thread into flushing mode and returns what op_leave needs to restore. Call it
- * around a whole stage, in a function that itself does no floating-point arithmetic: compilers
- * may move arithmetic across a change of mode. */
+/* Puts the calling thread into flushing mode, rounding to nearest, and returns what op_leave needs
+ * to restore. Call it around a whole stage, in a function that itself does no floating-point
+ * arithmetic: compilers may move arithmetic across a change of mode. */
 static inline uint32_t op_enter(void)
 {
 #if OP_HARDWARE_FLUSH
@@ -49,7 +50,9 @@ static inline uint32_t op_enter(void)
     _mm_setcsr(0x1f80 | 0x8040); /* all exceptions masked, round to nearest, FTZ | DAZ */
     return saved;
 #else
-    return 0;
+    int saved = fegetround();
+    fesetround(FE_TONEAREST);
+    return (uint32_t)saved;
 #endif
 }
 
@@ -58,7 +61,7 @@ static inline void op_leave(uint32_t saved)
 #if OP_HARDWARE_FLUSH
     _mm_setcsr(saved);
 #else
-    (void)saved;
+    fesetround((int)saved);
 #endif
 }
 
@@ -71,7 +74,7 @@ static inline uint32_t op_suspend(void)
     _mm_setcsr(0x1f80);
     return saved;
 #else
-    return 0;
+    return op_enter();
 #endif
 }
 

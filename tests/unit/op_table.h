@@ -18,6 +18,8 @@ typedef struct OpTable {
     float (*pow[2])(float, float);
     float (*dot3)(const float[3], const float[3]);
     float (*mix)(float, float, float);
+    uint32_t (*enter)(void);
+    void (*leave)(uint32_t);
 } OpTable;
 
 extern const OpTable op_hardware, op_software;
@@ -71,6 +73,8 @@ const OpTable OP_TABLE = {
     .pow = {unfused_pow, fused_pow},
     .dot3 = op_dot3,
     .mix = op_mix,
+    .enter = op_enter,
+    .leave = op_leave,
 };
 
 #endif

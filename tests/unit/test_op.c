@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <mpfr.h>
@@ -257,6 +258,25 @@ START_TEST(test_fma_libm)
 }
 END_TEST
 
+/* The caller's rounding is put aside, and comes back; in either way of flushing. */
+START_TEST(test_rounding_mode)
+{
+    static const int modes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+    const OpTable *table = _i ? &op_software : &op_hardware;
+    for (size_t k = 0; k < sizeof modes / sizeof *modes; k++) {
+        ck_assert_int_eq(fesetround(modes[k]), 0);
+        uint32_t saved = table->enter();
+        float third = table->binary[3](1.0f, 3.0f), minus = table->binary[3](-1.0f, 3.0f);
+        table->leave(saved);
+        int left = fegetround();
+        fesetround(FE_TONEAREST);
+        ck_assert_int_eq(left, modes[k]);
+        ck_assert_float_bits(third, 0x1.555556p-2f);
+        ck_assert_float_bits(minus, -0x1.555556p-2f);
+    }
+}
+END_TEST
+
 START_TEST(test_muladd)
 {
     /* (1 + 2^-12)² − (1 + 2^-11): the product's last bit, 2^-24, survives only when fused. */
@@ -452,6 +472,7 @@ int main(void)
     tcase_add_test(tcase, test_flush_edge);
     tcase_add_loop_test(tcase, test_exact, 0, 2);
     tcase_add_test(tcase, test_fma_libm);
+    tcase_add_loop_test(tcase, test_rounding_mode, 0, 2);
     tcase_add_test(tcase, test_muladd);
     tcase_add_test(tcase, test_order);
     tcase_add_test(tcase, test_min_max_saturate);
