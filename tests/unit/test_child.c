@@ -234,9 +234,12 @@ int main(void)
     TCase *tcase = tcase_create("child");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, test_records);
-    tcase_add_loop_test(tcase, test_endings, 0, 9);
-    tcase_add_test(tcase, test_memory);
+    tcase_add_loop_test(tcase, test_endings, 0, 7);
     tcase_add_test(tcase, test_ends_with_its_parent);
     suite_add_tcase(suite, tcase);
+    TCase *limits = testing_limits();
+    tcase_add_loop_test(limits, test_endings, 7, 9);
+    tcase_add_test(limits, test_memory);
+    suite_add_tcase(suite, limits);
     return testing_run(suite);
 }

@@ -220,7 +220,10 @@ int main(void)
     tcase_add_test(tcase, test_prints);
     tcase_add_test(tcase, test_limits);
     tcase_add_test(tcase, test_size);
-    tcase_add_test(tcase, test_memory);
     suite_add_tcase(suite, tcase);
+    TCase *limits = testing_limits();
+    tcase_add_checked_fixture(limits, scratch_make, scratch_remove);
+    tcase_add_test(limits, test_memory);
+    suite_add_tcase(suite, limits);
     return testing_run(suite);
 }

@@ -46,6 +46,16 @@ static inline uint32_t testing_bits(float x)
                       (double)testing_got, (double)testing_expected, (double)testing_expected);    \
     } while (0)
 
+/* For tests whose processes run into a limit, of memory, stack or time: what instruments programs
+ * has memory of its own, and leaves them out (CK_EXCLUDE_TAGS). */
+static inline TCase *testing_limits(void)
+{
+    TCase *tcase = tcase_create("limits");
+    tcase_set_tags(tcase, "limits");
+    tcase_set_timeout(tcase, 60);
+    return tcase;
+}
+
 /* Runs the suite in one process per test and returns the exit code of main. */
 static inline int testing_run(Suite *suite)
 {
