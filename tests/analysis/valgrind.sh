@@ -8,8 +8,8 @@
 #
 # Not run, because nothing of Peel would run under valgrind: what node starts (gltf_validator,
 # live_view, web_*), what a compiler makes of the installed library (package), includes, shell; nor
-# models_gltf, which has 20 seconds for each file; nor the campaign, whose scenes go to the least
-# numbers, where Mesa relies on the mode that valgrind has not; nor tests of limits (testing.h).
+# models_gltf, which has 20 seconds for each file; nor the campaign and test_arithmetic, which go to the
+# least numbers, where Mesa relies on the mode that valgrind has not; nor tests of limits (testing.h).
 # What else is not reported, and why: valgrind.supp.
 # Exits 1 if a test fails or a process of one reports anything.
 set -u
@@ -24,5 +24,7 @@ export VALGRIND_OPTS="--quiet --sim-hints=lax-ioctls --leak-check=full --show-le
 --num-callers=30 --fullpath-after=$root/ --log-file=$logs/report.%p"
 export CK_TIMEOUT_MULTIPLIER=100 PEEL_TEST_COUNT="${PEEL_TEST_COUNT-10}" PEEL_TEST_STRIDE=100003
 export CK_EXCLUDE_TAGS=limits
-run_tests "^(gltf_validator|live_view|web_.*|package|includes|shell|models_gltf|campaign.*|$uninstrumented)\$"
+without='gltf_validator|live_view|web_.*|package|includes|shell|models_gltf'
+without="$without|campaign.*|test_arithmetic|test_arithmetic_unfused"
+run_tests "^($without|$uninstrumented)\$"
 count_reports
