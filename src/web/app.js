@@ -15,9 +15,9 @@ const app = {
     makeSteps: () => [],
     listeners: {},
     linkTimer: null,
-    followed: 0, /* addresses so far */
-    following: Promise.resolve(),
     linkTime: 0, /* when it was written last */
+    followed: 0, /* addresses so far */
+    following: Promise.resolve(), /* the last of them */
     links: [], /* further parts of the address: see permalink */
     stale: false,
     refreshing: null,
@@ -150,7 +150,7 @@ app.change = async (wanted) => {
         told.push("view");
     }
     try {
-        if ((app.stale || app.refreshing) && app.view !== "live")
+        if (app.view !== "live")
             await (app.stale ? app.refresh() : app.refreshing);
     } catch (error) {
         app.say(error.message);

@@ -25,6 +25,6 @@ export VALGRIND_OPTS="--quiet --sim-hints=lax-ioctls --leak-check=full --show-le
 export CK_TIMEOUT_MULTIPLIER=100 PEEL_TEST_COUNT="${PEEL_TEST_COUNT-10}" PEEL_TEST_STRIDE=100003
 export CK_EXCLUDE_TAGS=limits
 without='gltf_validator|live_view|web_.*|package|includes|shell|models_gltf'
-without="$without|campaign.*|test_arithmetic|test_arithmetic_unfused"
+without="$without|campaign.*|test_arithmetic(_unfused)?"
 run_tests "^($without|$uninstrumented)\$"
 count_reports
