@@ -39,7 +39,8 @@ static error_t parse_background(const char *text, RenderOptions *options)
     for (int i = 0; i < 3; i++) {
         char *end;
         double value = strtod(at, &end);
-        if (end == at || *end != (i < 2 ? ',' : '\0') || !(value >= 0.0 && value <= 1e6))
+        if (isspace((unsigned char)*at) || end == at || *end != (i < 2 ? ',' : '\0') ||
+            !(value >= 0.0 && value <= 1e6))
             return options_error("--background %s: expected R,G,B, linear, from 0 to 1e6", text);
         options->background[i] = value;
         at = end + 1;

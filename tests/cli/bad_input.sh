@@ -127,6 +127,7 @@ b'
     refuse 'opacity 2' '--opacity' render tutorial $out --opacity 2
     refuse 'opacity nan' '--opacity' render tutorial $out --opacity nan
     refuse 'background' '--background' render tutorial $out --background 1,2
+    refuse 'a blank in the background' '--background 1, 2,3' render tutorial $out --background '1, 2,3'
     refuse 'camera' '--camera' render tutorial $out --camera nosuch
     refuse 'camera index' '--camera' render tutorial $out --camera 99
     refuse 'threads 0' '--threads' render tutorial $out --threads 0
