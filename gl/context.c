@@ -71,13 +71,19 @@ Result platform_load(const char *file, const char *packages, const PlatformSymbo
     return RESULT_OK;
 }
 
-/* Mesa crashes in a context of a driver that it does not have. */
-static Result check_driver_name(void)
+/* Mesa crashes in a context of a driver that it does not have, and where a vector has no room for
+ * 32 bits. It reads the width as here: in any base, its low 32 bits; what begins with no number is
+ * left alone. */
+static Result check_environment(void)
 {
-    const char *name = getenv("GALLIUM_DRIVER");
-    if (!name || !*name || strcmp(name, "llvmpipe") == 0 || strcmp(name, "softpipe") == 0)
-        return RESULT_OK;
-    return result_fail(RESULT_NO_GL, "GALLIUM_DRIVER=%s: expected llvmpipe or softpipe", name);
+    const char *name = getenv("GALLIUM_DRIVER"), *width = getenv("LP_NATIVE_VECTOR_WIDTH");
+    if (name && *name && strcmp(name, "llvmpipe") != 0 && strcmp(name, "softpipe") != 0)
+        return result_fail(RESULT_NO_GL, "GALLIUM_DRIVER=%s: expected llvmpipe or softpipe", name);
+    char *end;
+    if (width && (unsigned)strtol(width, &end, 0) < 32 && end != width)
+        return result_fail(RESULT_NO_GL, "LP_NATIVE_VECTOR_WIDTH=%s: expected 32 bits or more",
+                           width);
+    return RESULT_OK;
 }
 
 int context_threads(void)
@@ -166,7 +172,7 @@ static Result check_driver(Context *context)
 
 static Result start(Context *context)
 {
-    Result result = check_driver_name();
+    Result result = check_environment();
     if (result == RESULT_OK)
         result = platform->open(&context->handle);
     if (result != RESULT_OK)

@@ -192,6 +192,15 @@ export GALLIUM_DRIVER=nosuch
 refuse 'no such driver' 'GALLIUM_DRIVER' render tutorial --size 8x8 --with gl -o gl.png
 refuse 'no such driver' 'GALLIUM_DRIVER' compare tutorial --size 8x8
 unset GALLIUM_DRIVER
+for width in 0 31 0x10; do
+    export LP_NATIVE_VECTOR_WIDTH=$width
+    refuse "vectors of $width bits" "LP_NATIVE_VECTOR_WIDTH=$width" render tutorial --size 8x8 --with gl \
+        -o gl.png
+done
+for width in 32 none; do
+    LP_NATIVE_VECTOR_WIDTH=$width exits 0 "vectors of $width bits" "$peel" compare tutorial --size 8x8
+done
+unset LP_NATIVE_VECTOR_WIDTH
 mkdir -p library && : >library/libOSMesa.so.8
 export LD_LIBRARY_PATH="$work/library"
 refuse 'no OSMesa' 'libosmesa6' render tutorial --size 8x8 --with gl -o gl.png
