@@ -34,7 +34,8 @@ static Result read_png(const char *path, size_t max_bytes, Planes *out)
     if (result != RESULT_OK)
         return result;
     if (count < 4 || (memcmp(bytes, "\x89PNG", 4) != 0 && memcmp(bytes, "\xff\xd8\xff", 3) != 0))
-        result = result_fail(RESULT_BAD_INPUT, "%s: no image, expected PNG or OpenEXR", path);
+        result =
+            result_fail(RESULT_BAD_INPUT, "%s: neither PNG nor EXR, expected one of them", path);
     int width, height, channels = 0;
     if (result == RESULT_OK)
         result = decode_size(bytes, count, path, &width, &height, &channels);

@@ -8,8 +8,9 @@
 #
 # Not run, because nothing of Peel would run under valgrind: what node starts (gltf_validator,
 # live_view, web_*), what a compiler makes of the installed library (package), includes, shell; nor
-# models_gltf, which has 20 seconds for each file; nor the campaign and test_arithmetic, which go to the
-# least numbers, where Mesa relies on the mode that valgrind has not; nor tests of limits (testing.h).
+# models_gltf, which has 20 seconds for each file; nor the campaign and the tests of single values in
+# the driver's arithmetic (labs.h), which go to the least numbers, where Mesa relies on the mode that
+# valgrind has not; nor tests of limits (testing.h).
 # What else is not reported, and why: valgrind.supp.
 # Exits 1 if a test fails or a process of one reports anything.
 set -u
@@ -25,6 +26,6 @@ export VALGRIND_OPTS="--quiet --sim-hints=lax-ioctls --leak-check=full --show-le
 export CK_TIMEOUT_MULTIPLIER=100 PEEL_TEST_COUNT="${PEEL_TEST_COUNT-10}" PEEL_TEST_STRIDE=100003
 export CK_EXCLUDE_TAGS=limits
 without='gltf_validator|live_view|web_.*|package|includes|shell|models_gltf'
-without="$without|campaign.*|test_arithmetic(_unfused)?"
+without="$without|campaign.*|test_(arithmetic|blend_factors|blend_gl|driver|gl_formats)(_unfused)?"
 run_tests "^($without|$uninstrumented)\$"
 count_reports
