@@ -24,6 +24,7 @@ enum {
 /* What a child says, before every record and as its last word. */
 typedef enum Kind {
     KIND_RECORD = 0, /* size bytes follow */
+    KIND_READS,      /* so do those of a path */
     KIND_WARNING,
     KIND_LIMITS,
     KIND_END
@@ -65,6 +66,12 @@ Result child_put(int pipe, const void *record, size_t size)
 {
     const Header header = {.kind = KIND_RECORD, .size = size};
     return put(pipe, &header, record);
+}
+
+Result child_reads(int pipe, const char *path)
+{
+    const Header header = {.kind = KIND_READS, .size = strlen(path) + 1};
+    return put(pipe, &header, path);
 }
 
 static void put_warning(void *context, const char *line)
@@ -204,16 +211,18 @@ static bool read_all(Child *child, void *data, size_t size)
 }
 
 /* False without the whole record: *result is then a failure of the parent's, or OK. */
-static bool take_record(Child *child, size_t size, Result *result)
+static bool take_record(Child *child, Kind kind, size_t size, Result *result)
 {
-    void *record = malloc(size ? size : 1);
+    char *record = malloc(size ? size : 1);
     *result = RESULT_OK;
     if (!record)
         *result =
             result_fail(RESULT_NO_MEMORY, "out of memory: %zu bytes of a child process", size);
     bool taken = record && read_all(child, record, size);
-    if (taken)
+    if (taken && kind == KIND_RECORD)
         child->work->take(child->work->take_context, record, size);
+    else if (taken && size > 0 && record[size - 1] == '\0')
+        file_keep(record);
     free(record);
     return taken;
 }
@@ -227,7 +236,8 @@ static bool listen_to(Child *child, Result *result)
         header.message[sizeof header.message - 1] = '\0';
         switch (header.kind) {
         case KIND_RECORD:
-            if (!take_record(child, header.size, result))
+        case KIND_READS:
+            if (!take_record(child, header.kind, header.size, result))
                 return *result != RESULT_OK;
             break;
         case KIND_WARNING:

@@ -54,6 +54,9 @@ Result child_run(const ChildWork *work);
 /* In the child. IO when the parent no longer listens. */
 Result child_put(int pipe, const void *record, size_t size);
 
+/* In the child: it reads the file at path, which the caller's process keeps (base/file.h). */
+Result child_reads(int pipe, const char *path);
+
 /* In the child: other limits than it began with, counted from its beginning. */
 Result child_limit(int pipe, const ChildLimits *limits);
 

@@ -181,9 +181,43 @@ static void release(FileWriter *writer)
     *writer = (FileWriter){0};
 }
 
+/* Without links; they last as long as the program. */
+static char **kept;
+static size_t kept_count, kept_capacity;
+
+void file_keep(const char *path)
+{
+    struct stat status;
+    void *places = kept;
+    bool regular = stat(path, &status) == 0 && S_ISREG(status.st_mode); /* a device takes both */
+    char *place = regular ? realpath(path, NULL) : NULL;
+    if (place && memory_grow(&places, &kept_capacity, kept_count + 1, sizeof *kept) == RESULT_OK) {
+        kept = places;
+        kept[kept_count++] = place;
+    } else {
+        free(place);
+    }
+}
+
+Result file_check_kept(const char *path)
+{
+    char *place = kept_count ? realpath(path, NULL) : NULL;
+    bool found = false;
+    for (size_t i = 0; place && i < kept_count; i++)
+        found = found || strcmp(kept[i], place) == 0;
+    free(place);
+    return found ? result_fail(RESULT_BAD_INPUT,
+                               "%s: an input, expected another name for the output", path)
+                 : RESULT_OK;
+}
+
 Result file_writer_open(const char *path, FileWriter *out)
 {
-    *out = (FileWriter){.path = strdup(path)};
+    *out = (FileWriter){0};
+    Result result = file_check_kept(path);
+    if (result != RESULT_OK)
+        return result;
+    out->path = strdup(path);
     if (!out->path)
         return result_fail(RESULT_NO_MEMORY, "%s: out of memory", path);
     int descriptor = open_target(out);

@@ -19,8 +19,9 @@ typedef struct FileWriter {
 } FileWriter;
 
 /* Starts writing path. IO with a message naming path when its directory is missing or refuses, or
- * when path is a directory or a file that may not be written; *out then needs no close. A file that
- * the standard output or standard error goes to is appended to, in order with what they print. */
+ * when path is a directory or a file that may not be written; BAD_INPUT when it is kept
+ * (file_keep); *out then needs no close. A file that the standard output or standard error goes to
+ * is appended to, in order with what they print. */
 Result file_writer_open(const char *path, FileWriter *out);
 
 /* The same to the standard output, which stays open. */
@@ -40,6 +41,13 @@ Result file_writer_close(FileWriter *writer, bool commit);
 
 /* size bytes as one file. */
 Result file_write(const char *path, const void *data, size_t size);
+
+/* The regular file at path, if there is one, is read by the program: file_writer_open refuses it
+ * from now on. Not while other threads write files. */
+void file_keep(const char *path);
+
+/* BAD_INPUT when path is such a file. */
+Result file_check_kept(const char *path);
 
 /* The whole of a regular file below 4 GiB. The caller frees *bytes, which has a 0 behind its end.
  * IO when it cannot be read, BAD_INPUT when it is no regular file or too large. */

@@ -132,7 +132,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     EvalCommand *command = state->input;
     switch (key) {
     case KEY_LAYERS:
-        command->layers_path = argument;
+        command->layers_path = options_input(argument);
         return 0;
     case KEY_EQUATION:
         return equation_parse(argument, &command->equation) == RESULT_OK

@@ -59,7 +59,7 @@ static error_t parse_file(const char *option, bool depth, const char *text,
     }
     if (state->next >= state->argc)
         return options_error("%s %s: expected a file behind it", option, text);
-    file.path = state->argv[state->next++];
+    file.path = options_input(state->argv[state->next++]);
     void *files = command->files;
     Result result = memory_grow(&files, &command->file_capacity, command->file_count + 1,
                                 sizeof *command->files);

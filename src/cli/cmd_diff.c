@@ -186,7 +186,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         command->json = argument;
         return 0;
     case KEY_SCENE:
-        command->scene = command->render.scene_path = argument;
+        command->scene = command->render.scene_path = options_input(argument);
         return 0;
     case ARGP_KEY_ARG:
         return parse_file(argument, command);

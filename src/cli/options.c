@@ -93,24 +93,15 @@ void options_describe(OptionsVisit visit, void *context)
     description.context = context;
 }
 
-/* Of the command line that was parsed last: more are not looked at. */
-enum {
-    INPUTS_MAX = 64
-};
-static const char *inputs[INPUTS_MAX];
-static int input_count;
-
 const char *options_input(const char *path)
 {
-    if (input_count < INPUTS_MAX)
-        inputs[input_count++] = path;
+    file_keep(path);
     return path;
 }
 
 static int parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *input)
 {
     reported = false;
-    input_count = 0;
     if (description.visit) {
         description.visit(description.context, argp, flags & ARGP_LONG_ONLY);
         return OPTIONS_HELPED;
@@ -222,10 +213,14 @@ RenderOptions options_default(void)
 
 /* ---- the scene ---- */
 
+/* What will be written, by options_check_output. */
+static const char *outputs[4];
+static int output_count;
+
 static Result load(const char *path, size_t max_memory, Scene *out)
 {
     const BuiltinScene *builtin = generate_find(path);
-    if (builtin && access(path, F_OK) != 0)
+    if (builtin) /* a file of such a name is no glTF file; a folder may be: of its page, say */
         return builtin->generate(out);
     if (access(path, F_OK) != 0 && !strpbrk(path, "./"))
         return result_fail(RESULT_IO,
@@ -274,7 +269,9 @@ Result options_load_scene(RenderOptions *options, Scene *out)
     Result result = load(options->scene_path, options->desc.max_memory, out);
     if (result != RESULT_OK)
         return result;
-    if (options->camera)
+    for (int i = 0; i < output_count && result == RESULT_OK; i++)
+        result = file_check_kept(outputs[i]); /* what the scene names is known now */
+    if (result == RESULT_OK && options->camera)
         result = choose_camera(options->camera, out, &options->desc.camera);
     if (result != RESULT_OK) {
         scene_free(out);
@@ -355,10 +352,11 @@ Result options_check_output(const char *path)
     int error = 0;
     if (!path)
         return RESULT_OK;
-    for (int i = 0; i < input_count; i++)
-        if (access(inputs[i], F_OK) == 0 && same_place(path, inputs[i])) /* not a scene's name */
-            return result_fail(RESULT_BAD_INPUT,
-                               "%s: an input, expected another name for the output", path);
+    Result result = file_check_kept(path);
+    if (result != RESULT_OK)
+        return result;
+    if (output_count < (int)(sizeof outputs / sizeof outputs[0]))
+        outputs[output_count++] = path;
     bool exists = stat(path, &status) == 0;
     if (exists && S_ISDIR(status.st_mode))
         error = EISDIR;
@@ -368,8 +366,25 @@ Result options_check_output(const char *path)
         return result_fail(RESULT_IO, "%s: cannot write this file: %s", path, strerror(error));
     if (exists && !S_ISREG(status.st_mode))
         return RESULT_OK; /* opening it may wait, or end what reads it */
-    Result result = file_writer_open(path, &writer);
+    result = file_writer_open(path, &writer);
     return result == RESULT_OK ? file_writer_close(&writer, false) : result;
+}
+
+/* Files of a page that an input may well be named like; what else it may be is found out when it is
+ * written. */
+static Result check_page(const char *report)
+{
+    static const char *const names[] = {"index.html", "theirs.png", "reference.png",
+                                        "difference.png"};
+    Result result = RESULT_OK;
+    for (size_t i = 0; i < sizeof names / sizeof names[0] && result == RESULT_OK; i++) {
+        char *path;
+        if (asprintf(&path, "%s/%s", report, names[i]) < 0)
+            return result_fail(RESULT_NO_MEMORY, "%s: out of memory", report);
+        result = file_check_kept(path);
+        free(path);
+    }
+    return result;
 }
 
 Result options_check_outputs(const char *first, const char *second, const char *report)
@@ -388,6 +403,8 @@ Result options_check_outputs(const char *first, const char *second, const char *
                     result_fail(RESULT_BAD_INPUT,
                                 "%s: two outputs in one file, expected another name", paths[i]);
     free(page);
+    if (result == RESULT_OK && report)
+        result = check_page(report);
     if (result == RESULT_OK)
         result = options_check_output(first);
     return result == RESULT_OK ? options_check_output(second) : result;

@@ -83,6 +83,8 @@ Result diff_deep(const DeepImage *a, const DeepImage *b, const DiffOptions *opti
     FoldChannel channels[CHANNELS];
     Fold fold;
     *out = (DiffPart){.deep = true,
+                      .x = a->has_window ? a->window.x : 0,
+                      .y = a->has_window ? a->window.y : 0,
                       .width = a->width,
                       .height = a->height,
                       .samples = {a->sample_count, b->sample_count}};

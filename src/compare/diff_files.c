@@ -214,6 +214,12 @@ static Result compare_flat(Source sources[DIFF_SIDES], const int parts[DIFF_SIDE
     return result;
 }
 
+static DiffSize deep_size(const DeepImage *image)
+{
+    return (DiffSize){image->has_window ? image->window.x : 0,
+                      image->has_window ? image->window.y : 0, image->width, image->height};
+}
+
 static Result compare_deep(const Source sources[DIFF_SIDES], const char *name,
                            const DiffFilesOptions *options, DiffReport *report)
 {
@@ -224,8 +230,7 @@ static Result compare_deep(const Source sources[DIFF_SIDES], const char *name,
     for (int side = 0; side < DIFF_SIDES && result == RESULT_OK; side++)
         result = exr_deep_read(sources[side].path, most, &images[side]);
     const DeepImage *a = &images[0], *b = &images[1];
-    if (result == RESULT_OK && same_size(report, name, (DiffSize){0, 0, a->width, a->height},
-                                         (DiffSize){0, 0, b->width, b->height})) {
+    if (result == RESULT_OK && same_size(report, name, deep_size(a), deep_size(b))) {
         DiffPart part;
         result = diff_deep(a, b, &options->diff, &part);
         result = add_part(report, name, result, &part);

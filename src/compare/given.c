@@ -163,7 +163,7 @@ double given_quantum(PixelFormat format, double value)
         return 0.0;
     int exponent; /* of the bit above the value's highest; a half has 11 bits, the least 2^-24 */
     frexp(value, &exponent);
-    return ldexp(1.0, exponent > -13 ? exponent - 11 : -24);
+    return ldexp(1.0, value != 0.0 && exponent > -13 ? exponent - 11 : -24);
 }
 
 /* ---- meaning -------------------------------------------------------------------------------- */

@@ -23,10 +23,10 @@ static json_t *check_step(Document *json, const CheckStep *step)
 {
     const JudgeFigures *figures = &step->figures;
     json_t *object = json_object();
-    document_put(json, object, "name", json_string(step->name));
+    document_put(json, object, "name", document_string(step->name));
     document_put(json, object, "agree", json_boolean(step->agree));
     document_put(json, object, "judged", json_boolean(step->judged));
-    document_put(json, object, "note", step->note[0] ? json_string(step->note) : json_null());
+    document_put(json, object, "note", step->note[0] ? document_string(step->note) : json_null());
     if (!step->judged)
         return object;
     document_put(json, object, "format", json_string(format_info(step->format)->name));
@@ -79,7 +79,8 @@ Result report_check_json(const CheckReport *report, const char *path)
     document_put(&json, root, "peels", json_integer(report->frame.peels));
     document_put(&json, root, "image", meaning(&json, report));
     document_put(&json, root, "first",
-                 report->first < 0 ? json_null() : json_string(report->steps[report->first].name));
+                 report->first < 0 ? json_null()
+                                   : document_string(report->steps[report->first].name));
     document_put(&json, root, "hint", hint[0] ? json_string(hint) : json_null());
     document_put(&json, root, "steps", steps);
     return document_write(&json, root, path);

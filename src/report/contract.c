@@ -312,6 +312,15 @@ static Result reload(const ContractDesc *contract, const char *dir, Scene *out)
     return result;
 }
 
+/* Before anything is written: the folder may be that of the scene, or of its buffers. */
+static Result check_kept(const char *dir, const char *name)
+{
+    char *path = pictures_path(dir, name);
+    Result result = path ? file_check_kept(path) : RESULT_NO_MEMORY;
+    free(path);
+    return result;
+}
+
 Result report_contract_write(const ContractDesc *contract, const char *dir)
 {
     static const char *const names[] = {"contract.json", "vertices.bin", "indices.bin",
@@ -321,7 +330,11 @@ Result report_contract_write(const ContractDesc *contract, const char *dir)
     View view = {0};
     ContractDesc reloaded = *contract;
     reloaded.scene = &scene;
-    Result result = reload(contract, dir, &scene);
+    Result result = check_kept(dir, "scene.gltf");
+    for (size_t i = 0; i < sizeof names / sizeof names[0] && result == RESULT_OK; i++)
+        result = check_kept(dir, names[i]);
+    if (result == RESULT_OK)
+        result = reload(contract, dir, &scene);
     if (result == RESULT_OK)
         result = view_build(&scene, &contract->desc, &view);
     for (size_t i = 0; i < sizeof names / sizeof names[0] && result == RESULT_OK; i++) {

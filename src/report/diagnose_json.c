@@ -91,7 +91,7 @@ static json_t *image(Document *json, const DiagnoseSubject *subject, const Diagn
 {
     const GivenMeaning *form = &diagnosis->form;
     json_t *object = json_object();
-    document_put(json, object, "path", json_string(subject->image_path));
+    document_put(json, object, "path", document_string(subject->image_path));
     document_put(json, object, "format", json_string(format_info(diagnosis->format)->name));
     document_put(json, object, "encoding", json_string(given_encoding_name(form->encoding)));
     document_put(json, object, "bottom_up", json_boolean(form->rows == GIVEN_BOTTOM_UP));
@@ -119,7 +119,7 @@ Result report_diagnose_json(const DiagnoseSubject *subject, const Diagnosis *dia
     document_put(&json, root, "pixels_beyond_quantisation", document_count(diagnosis->beyond));
     document_put(&json, root, "pixels_beyond_tolerance", document_count(diagnosis->over));
     document_put(&json, root, "pixels_nonfinite", document_count(diagnosis->nonfinite));
-    document_put(&json, root, "scene", json_string(subject->scene_path));
+    document_put(&json, root, "scene", document_string(subject->scene_path));
     document_put(&json, root, "image", image(&json, subject, diagnosis));
     return document_write(&json, root, path);
 }

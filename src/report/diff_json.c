@@ -62,8 +62,7 @@ static json_t *pixel_of(Document *json, const ReportDiff *diff, const DiffPart *
     if (part->deep)
         document_put(json, one, "sample", document_count(pixel->sample));
     document_put(json, one, "error", document_real(pixel->error));
-    document_put(json, one, "ulp",
-                 pixel->has_ulp ? document_count(pixel->ulp) : json_null());
+    document_put(json, one, "ulp", pixel->has_ulp ? document_count(pixel->ulp) : json_null());
     if (diff->budget && part == &diff->report->parts[diff->report->pictured])
         document_put(json, one, "class",
                      document_string(class_key((PixelClass)diff->budget->classes[at])));

@@ -30,10 +30,11 @@
  * *out is then empty. */
 Result gltf_load(const char *path, Scene *out);
 
-/* The same. Once the document is known to be well-formed, and before anything is made of it, sized
- * is told the bytes of its file and of all files that it names; what fails there fails the load. */
-typedef Result (*GltfSized)(void *context, uint64_t bytes);
-Result gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *out);
+/* The same. Once the document is known to be well-formed, and before anything is made of it, file
+ * is told its path and bytes and those of every file that it names; what fails there fails the
+ * load. */
+typedef Result (*GltfFile)(void *context, const char *path, uint64_t bytes);
+Result gltf_load_files(const char *path, GltfFile file, void *context, Scene *out);
 
 /* Writes .gltf (buffers embedded) or .glb by the extension, to a temporary name, then renames. All
  * numbers keep their bits; loading gives the same floats, and matrices rounded to float. The extras

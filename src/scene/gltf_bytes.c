@@ -83,10 +83,10 @@ static uint64_t file_bytes(const char *path)
     return stat(path, &info) == 0 && S_ISREG(info.st_mode) ? (uint64_t)info.st_size : 0;
 }
 
-uint64_t gltf_bytes_all(const GltfBytes *bytes)
+Result gltf_bytes_files(const GltfBytes *bytes, GltfFile file, void *context)
 {
     static const char *const arrays[] = {"buffers", "images"};
-    uint64_t all = file_bytes(bytes->path);
+    Result result = file(context, bytes->path, file_bytes(bytes->path));
     for (int k = 0; k < 2; k++) {
         const json_t *element;
         size_t i;
@@ -95,12 +95,12 @@ uint64_t gltf_bytes_all(const GltfBytes *bytes)
             const char *uri = json_string_value(json_object_get(element, "uri"));
             char *path = NULL;
             if (uri && strncmp(uri, "data:", 5) != 0 &&
-                gltf_file_beside(bytes->path, uri, &path) == RESULT_OK)
-                all += file_bytes(path);
+                gltf_file_beside(bytes->path, uri, &path) == RESULT_OK && !result)
+                result = file(context, path, file_bytes(path));
             free(path);
         }
     }
-    return all;
+    return result;
 }
 
 static float float_at(const unsigned char *at)

@@ -2,6 +2,7 @@
 #ifndef PEEL_SCENE_GLTF_BYTES_H
 #define PEEL_SCENE_GLTF_BYTES_H
 
+#include "scene/gltf.h"
 #include "scene/gltf_json.h"
 
 typedef struct GltfSpan {
@@ -24,8 +25,9 @@ void gltf_bytes_free(GltfBytes *bytes); /* buffers only */
  */
 Result gltf_bytes_image(GltfBytes *bytes, size_t image, GltfSpan *out);
 
-/* The bytes of the document's file and of all files that it names, as often as it names them. */
-uint64_t gltf_bytes_all(const GltfBytes *bytes);
+/* Tells file of the document's file and of all files that it names, as often as it names them; the
+ * first failure ends it. */
+Result gltf_bytes_files(const GltfBytes *bytes, GltfFile file, void *context);
 
 /* The texture coordinates of a checked accessor, 2 floats per vertex: floats with the file's bits,
  * normalised integers as c/255 and c/65535. The caller frees *out; NULL after a failure. */

@@ -12,7 +12,8 @@ typedef struct Load {
     size_t max_memory;
     /* In the child. */
     int pipe;
-    size_t memory; /* what it may take now */
+    uint64_t bytes; /* of the files so far */
+    size_t memory;  /* what it may take now */
     /* In the parent. */
     Scene *scene;
     Result read; /* what blob_read made of the child's scene; INTERNAL: there is none */
@@ -34,12 +35,14 @@ ChildLimits gltf_child_limits(uint64_t bytes, size_t max_memory)
 
 /* ---- in the child ---------------------------------------------------------------------------- */
 
-static Result on_size(void *context, uint64_t bytes)
+static Result on_file(void *context, const char *path, uint64_t bytes)
 {
     Load *load = context;
-    const ChildLimits limits = gltf_child_limits(bytes, load->max_memory);
+    load->bytes += bytes;
+    const ChildLimits limits = gltf_child_limits(load->bytes, load->max_memory);
     load->memory = limits.memory;
-    return child_limit(load->pipe, &limits);
+    Result result = child_reads(load->pipe, path);
+    return result ? result : child_limit(load->pipe, &limits);
 }
 
 static Result run(void *context, int pipe)
@@ -49,7 +52,7 @@ static Result run(void *context, int pipe)
     unsigned char *bytes = NULL;
     size_t count = 0;
     load->pipe = pipe;
-    Result result = gltf_load_sized(load->path, on_size, load, &scene);
+    Result result = gltf_load_files(load->path, on_file, load, &scene);
     if (!result)
         result = blob_write(&scene, &bytes, &count);
     if (!result)

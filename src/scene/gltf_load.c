@@ -366,7 +366,7 @@ static Result name_file(const char *path, Result result)
     return result;
 }
 
-Result gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *out)
+Result gltf_load_files(const char *path, GltfFile file, void *context, Scene *out)
 {
     *out = (Scene){0};
     GltfJson json;
@@ -375,8 +375,8 @@ Result gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *
         return name_file(path, result);
     Loader loader = {.path = path, .json = &json, .bytes = {.path = path, .json = &json}};
     loader.textures.bytes = &loader.bytes;
-    if (sized)
-        result = sized(context, gltf_bytes_all(&loader.bytes));
+    if (file)
+        result = gltf_bytes_files(&loader.bytes, file, context);
     if (!result)
         result = gltf_assimp_import(path, &json, &loader.assimp);
     if (!result)
@@ -398,5 +398,5 @@ Result gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *
 
 Result gltf_load(const char *path, Scene *out)
 {
-    return gltf_load_sized(path, NULL, NULL, out);
+    return gltf_load_files(path, NULL, NULL, out);
 }

@@ -35,6 +35,7 @@ app.start = async () => {
         await app.open();
         await app.check();
         await sides.open();
+        app.useFrame(app.frame); /* its steps, now that the truth is there */
         app.showHead();
         await app.follow(location.hash);
         document.body.dataset.state = "ready";

@@ -187,6 +187,37 @@ refuse 'scene without output' '-o FILE' scenes tutorial
 refuse 'json in a missing directory' 'nosuch/x.json' compare tutorial --size 8x8 --json nosuch/x.json
 refuse 'tolerance' '--tolerance' compare tutorial --tolerance -1
 
+# No output is a file that the command reads, whatever named it.
+mkdir -p read/page
+"$peel" scenes tutorial -o read/scene.gltf >/dev/null
+"$peel" render tutorial --size 8x8 -o read/theirs.exr >/dev/null
+"$peel" render tutorial --size 8x8 -o read/page/theirs.png >/dev/null
+printf '1,0,0,0.5\n' >read/layers.txt
+head -c 36 /dev/zero >read/buffer.exr
+cat >read/named.gltf <<'END'
+{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+ "buffers":[{"byteLength":36,"uri":"buffer.exr"}],"bufferViews":[{"buffer":0,"byteLength":36}],
+ "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+ "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]}
+END
+cp -r read before
+input='an input, expected another name for the output'
+refuse 'layer' "$input" check tutorial --size 8x8 --layer 0 read/theirs.exr --json read/theirs.exr
+refuse 'depth' "$input" check tutorial --size 8x8 --depth 0 read/theirs.exr --json read/theirs.exr
+refuse 'scene' "$input" diff read/theirs.exr read/theirs.exr --scene read/scene.gltf \
+    --json read/scene.gltf
+refuse 'layers' "$input" blend eval --layers read/layers.txt --json read/layers.txt
+refuse 'export' "$input" scenes read/scene.gltf --export read --size 8x8
+refuse 'page of check' "$input" check tutorial read/page/theirs.png --size 8x8 --report read/page
+refuse 'page of diagnose' "$input" diagnose tutorial read/page/theirs.png --size 8x8 \
+    --report read/page
+refuse 'buffer' "$input" render read/named.gltf --size 8x8 -o read/buffer.exr
+refuse 'buffer of a plan' "$input" plan read/named.gltf --size 8x8 --json read/buffer.exr
+exits 0 'what is read stays' diff -r before read
+mkdir tutorial
+exits 0 'a folder named like a scene' "$peel" render tutorial --size 8x8 -o tutorial/a.png
+rm -rf read before tutorial
+
 # No GL: a driver that Mesa does not have, and no OSMesa at all (the loader finds an empty file).
 export GALLIUM_DRIVER=nosuch
 refuse 'no such driver' 'GALLIUM_DRIVER' render tutorial --size 8x8 --with gl -o gl.png

@@ -2,6 +2,7 @@
  * the child becomes one line that names the file. */
 #include "textured_gltf.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "scene/blob.h"
 #include "scene/generate.h"
@@ -23,9 +24,9 @@ typedef enum Fate {
 
 static Fate fate;
 
-Result __real_gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *out);
-Result __wrap_gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *out);
-Result __wrap_gltf_load_sized(const char *path, GltfSized sized, void *context, Scene *out)
+Result __real_gltf_load_files(const char *path, GltfFile file, void *context, Scene *out);
+Result __wrap_gltf_load_files(const char *path, GltfFile file, void *context, Scene *out);
+Result __wrap_gltf_load_files(const char *path, GltfFile file, void *context, Scene *out)
 {
     switch (fate) {
     case FATE_PRINTS:
@@ -46,7 +47,7 @@ Result __wrap_gltf_load_sized(const char *path, GltfSized sized, void *context, 
     default:
         break;
     }
-    return __real_gltf_load_sized(path, sized, context, out);
+    return __real_gltf_load_files(path, file, context, out);
 }
 
 /* ---- tests -------------------------------------------------------------------------------------
@@ -74,7 +75,7 @@ START_TEST(test_same_scene)
     static const char *const names[] = {"teapot_hall", "lamps"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         Scene scene;
-        const char *path = scratch_path("scene.glb");
+        const char *path = scratch_path(i ? "other.glb" : "scene.glb"); /* the first is kept */
         ck_assert_int_eq(generate_find(names[i])->generate(&scene), RESULT_OK);
         ck_assert_int_eq(gltf_write(&scene, path), RESULT_OK);
         scene_free(&scene);
@@ -170,28 +171,41 @@ START_TEST(test_limits)
 }
 END_TEST
 
-static Result note_size(void *context, uint64_t bytes)
+typedef struct Files {
+    int count;
+    uint64_t bytes;
+} Files;
+
+static Result note_file(void *context, const char *path, uint64_t bytes)
 {
-    *(uint64_t *)context = bytes;
-    return result_fail(RESULT_NO_GL, "enough");
+    Files *files = context;
+    const char *name = strrchr(path, '/') + 1;
+    ck_assert_str_eq(name, files->count ? "external.bin" : "external.gltf");
+    files->bytes += bytes;
+    return ++files->count == 2 ? result_fail(RESULT_NO_GL, "enough") : RESULT_OK;
 }
 
-/* The files that a document names count. */
-START_TEST(test_size)
+/* The files that a document names count, and are kept. */
+START_TEST(test_files)
 {
     const char *path = write_external("external.bin");
     FILE *file = fopen(scratch_path("external.bin"), "wb");
     struct stat info;
     Scene scene;
-    uint64_t bytes = 0;
+    Files files = {0};
     ck_assert_ptr_nonnull(file);
     ck_assert_int_eq(ftruncate(fileno(file), 4 << 20), 0);
     fclose(file);
     ck_assert_int_eq(stat(path, &info), 0);
-    ck_assert_int_eq(gltf_load_sized(path, note_size, &bytes, &scene), RESULT_NO_GL);
+    ck_assert_int_eq(gltf_load_files(path, note_file, &files, &scene), RESULT_NO_GL);
     ck_assert_ptr_null(scene.meshes);
-    ck_assert_uint_eq(bytes, (uint64_t)info.st_size + (4 << 20));
+    ck_assert_int_eq(files.count, 2);
+    ck_assert_uint_eq(files.bytes, (uint64_t)info.st_size + (4 << 20));
+    ck_assert_int_eq(file_check_kept(path), RESULT_OK);
     check_same(path);
+    ck_assert_int_eq(file_check_kept(path), RESULT_BAD_INPUT);
+    ck_assert_int_eq(file_check_kept(scratch_path("external.bin")), RESULT_BAD_INPUT);
+    ck_assert_int_eq(file_check_kept(scratch_path("other.bin")), RESULT_OK);
 }
 END_TEST
 
@@ -219,7 +233,7 @@ int main(void)
     tcase_add_test(tcase, test_ends);
     tcase_add_test(tcase, test_prints);
     tcase_add_test(tcase, test_limits);
-    tcase_add_test(tcase, test_size);
+    tcase_add_test(tcase, test_files);
     suite_add_tcase(suite, tcase);
     TCase *limits = testing_limits();
     tcase_add_checked_fixture(limits, scratch_make, scratch_remove);
