@@ -3,11 +3,7 @@
 set -u
 peel=$1
 scenes=$2/data/scenes
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-passed=0
+. "$(dirname "$0")/checks.sh"
 sink=/dev/null # for standard output
 
 # refuse WHAT PATTERN ARGUMENT...: exit 4, one stderr line that has PATTERN, no new file.
