@@ -96,6 +96,10 @@ head -c 300 right.exr >short.exr
 echo text >text.png
 "$peel" render tutorial $settings --trace trace.exr >/dev/null
 LC_ALL=C sed 's/R\x00\x02\x00\x00\x00/Q\x00\x02\x00\x00\x00/' right.exr >none.exr
+name=$(printf 'right\377.png')
+cp right.png "$name"
+exits 0 'a name that is not UTF-8' "$peel" diagnose tutorial "$name" $settings --json name.json
+check 'a name that is not UTF-8' node -e "JSON.parse(require('fs').readFileSync('name.json'))"
 refused 3 'another size' tutorial right.png --size 64x47 --json none.json
 check 'both sizes' grep -q '64x48.*64x47' output
 check 'nothing written' test ! -e none.json

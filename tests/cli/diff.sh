@@ -191,6 +191,8 @@ for alpha in 0.5 0.25; do
 done
 exits 0 'other samples' "$peel" render chain --size 48x32 --with truth --deep -o more.exr
 exits 0 'deep, equal' "$peel" diff deep0.5.exr deep0.5.exr
+oiiotool deep0.5.exr --origin +5+7 -o deep_moved.exr
+exits 3 'deep, windows' "$peel" diff deep0.5.exr deep_moved.exr
 exits 2 'deep' "$peel" diff deep0.5.exr deep0.25.exr -o deep.png
 has 'deep' '^  Z  *float  *0  *0 '
 has 'deep' '^  A  *float  *0.25  *0.25 '

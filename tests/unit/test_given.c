@@ -207,6 +207,7 @@ START_TEST(test_encodings)
     }
     ck_assert_double_eq(given_quantum(FORMAT_RGBA16F, 1.0), 0x1p-10);
     ck_assert_double_eq(given_quantum(FORMAT_RGBA16F, 1e-9), 0x1p-24);
+    ck_assert_double_eq(given_quantum(FORMAT_RGBA16F, 0.0), 0x1p-24);
     ck_assert_double_eq(given_stored_value(FORMAT_RGBA8, GIVEN_LINEAR, 3.0), 1.0);
     ck_assert_double_eq(given_stored_value(FORMAT_RGBA8, GIVEN_LINEAR, -3.0), 0.0);
     ck_assert_double_eq(given_stored_value(FORMAT_RGBA16F, GIVEN_LINEAR, -3.0), -3.0);

@@ -169,6 +169,8 @@ async function testScene(browser, scene) {
     const args = makePage(scene, folder);
     const page = await open(browser, path.join(folder, "index.html"));
     assert.match(await page.textContent("#self-check"), /its bits are those of the program/);
+    assert.match(await page.evaluate(() =>
+        String(app.steps.find(({ id }) => id === "truth").text)), /It counts/);
     const expected = new Expected(await stateOf(page, scene, folder, args));
     const [first, second, third] = pixels(expected);
     await choosePixel(page, first);
