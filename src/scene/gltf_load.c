@@ -193,8 +193,23 @@ static void add_instances(Loader *loader, const json_t *node, const struct aiNod
     }
 }
 
-/* glTF's camera knows no scale: a scaled node's axes are brought back to unit length. */
-static void add_camera(Loader *loader, const json_t *node, const Matrix *world)
+/* A node's matrix without the mirroring in its scale. Of a matrix that mirrors, only whether it
+ * does is known: as if by all three axes. */
+static Matrix unmirror(const json_t *node, Matrix local)
+{
+    const json_t *scale = json_object_get(node, "scale");
+    bool all = json_object_get(node, "matrix") && matrix_determinant3(&local) < 0.0;
+    for (size_t c = 0; c < 3; c++)
+        if (all || json_number_value(json_array_get(scale, c)) < 0.0)
+            for (size_t r = 0; r < 3; r++)
+                local.m[4 * c + r] = -local.m[4 * c + r];
+    return local;
+}
+
+/* glTF's camera knows no scale: its axes are those of the nodes without mirroring, `upright`, and
+ * brought back to unit length. Source: glTF 2.0, 3.10.1 (the view matrix). */
+static void add_camera(Loader *loader, const json_t *node, const Matrix *world,
+                       const Matrix *upright)
 {
     const json_t *from =
         gltf_json_element(loader->json, "cameras", gltf_json_index(node, "camera", SIZE_MAX));
@@ -203,10 +218,11 @@ static void add_camera(Loader *loader, const json_t *node, const Matrix *world)
     if (!perspective)
         return;
     const json_t *far = json_object_get(perspective, "zfar");
-    Camera camera = {.world = *world,
+    Camera camera = {.world = *upright,
                      .yfov = json_number_value(json_object_get(perspective, "yfov")),
                      .near = json_number_value(json_object_get(perspective, "znear")),
                      .far = far ? json_number_value(far) : INFINITY};
+    memcpy(camera.world.m + 12, world->m + 12, 3 * sizeof *world->m);
     for (int c = 0; c < 3; c++) {
         double *axis = camera.world.m + 4 * c;
         double length = sqrt((axis[0] * axis[0] + axis[1] * axis[1]) + axis[2] * axis[2]);
@@ -274,7 +290,8 @@ static void read_surroundings(Loader *loader, const json_t *node)
 }
 
 /* Assimp's nodes and the file's, side by side: same children in the same order. */
-static void add_node(Loader *loader, size_t number, const struct aiNode *from, const Matrix *parent)
+static void add_node(Loader *loader, size_t number, const struct aiNode *from, const Matrix *parent,
+                     const Matrix *upright_parent)
 {
     if (loader->builder.result)
         return;
@@ -282,7 +299,8 @@ static void add_node(Loader *loader, size_t number, const struct aiNode *from, c
     const json_t *children = json_object_get(node, "children");
     const char *name = json_string_value(json_object_get(node, "name"));
     Matrix local = from_assimp(&from->mTransformation);
-    Matrix world = matrix_multiply(parent, &local);
+    Matrix world = matrix_multiply(parent, &local), upright = unmirror(node, local);
+    upright = matrix_multiply(upright_parent, &upright);
     snprintf(loader->node_name, sizeof loader->node_name, "node %zu (%.80s)", number,
              name ? name : "unnamed");
     for (int i = 0; i < 16; i++)
@@ -291,7 +309,7 @@ static void add_node(Loader *loader, size_t number, const struct aiNode *from, c
     if (local.m[3] != 0.0 || local.m[7] != 0.0 || local.m[11] != 0.0 || local.m[15] != 1.0)
         fail(loader, "an affine matrix, with a last row of 0 0 0 1");
     add_instances(loader, node, from, &world);
-    add_camera(loader, node, &world);
+    add_camera(loader, node, &world, &upright);
     add_light(loader, node, &world);
     read_surroundings(loader, node);
     if (json_array_size(children) != from->mNumChildren) {
@@ -300,7 +318,7 @@ static void add_node(Loader *loader, size_t number, const struct aiNode *from, c
     }
     for (unsigned i = 0; i < from->mNumChildren; i++)
         add_node(loader, (size_t)json_integer_value(json_array_get(children, i)),
-                 from->mChildren[i], &world);
+                 from->mChildren[i], &world, &upright);
 }
 
 /* Assimp puts several roots below one of its own, and uses a single one as it is. */
@@ -318,7 +336,7 @@ static void add_roots(Loader *loader)
     }
     for (size_t i = 0; i < count; i++)
         add_node(loader, (size_t)json_integer_value(json_array_get(roots, i)),
-                 count == 1 ? top : top->mChildren[i], &identity);
+                 count == 1 ? top : top->mChildren[i], &identity, &identity);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */

@@ -187,6 +187,31 @@ START_TEST(name_of_other_bytes)
 }
 END_TEST
 
+/* Nodes that mirror place a camera and do not turn it: scaling is ignored (glTF 2.0, 3.10.1). */
+START_TEST(camera_is_not_mirrored)
+{
+    Scene scene;
+    load_quad(QUAD_MESH ",\"scenes\":[{\"nodes\":[0,1,2,3,4]}],\"nodes\":[{\"mesh\":0},"
+                        "{\"camera\":0,\"scale\":[-1,-1,-1]},{\"camera\":0,\"scale\":[-2,1,-3]},"
+                        "{\"camera\":0,\"matrix\":[-1,0,0,0,0,-1,0,0,0,0,-1,0,0,0,0,1]},"
+                        "{\"children\":[5],\"scale\":[-1,1,1],\"translation\":[5,0,0]},"
+                        "{\"camera\":0,\"translation\":[1,0,0],\"rotation\":[0,1,0,0]}],"
+                        "\"cameras\":[{\"type\":\"perspective\",\"perspective\":"
+                        "{\"yfov\":0.7,\"znear\":0.01}}]",
+              &scene);
+    ck_assert_uint_eq(scene.camera_count, 4);
+    for (size_t i = 0; i < 4; i++) {
+        double sign = i == 3 ? -1.0 : 1.0; /* half a turn about y */
+        const double axes[3] = {sign, 1.0, sign};
+        for (int c = 0; c < 3; c++)
+            for (int r = 0; r < 3; r++)
+                ck_assert_double_eq(scene.cameras[i].world.m[4 * c + r], c == r ? axes[c] : 0.0);
+        ck_assert_double_eq(scene.cameras[i].world.m[12], i == 3 ? 4.0 : 0.0);
+    }
+    scene_free(&scene);
+}
+END_TEST
+
 START_TEST(camera_field_is_vertical)
 {
     static const char *const aspects[] = {"", ",\"aspectRatio\":1.7777778", ",\"aspectRatio\":0.5",
@@ -479,6 +504,7 @@ int main(void)
     tcase_add_test(test, unwritable_places);
     tcase_add_test(test, escaped_buffer_names);
     tcase_add_test(test, camera_field_is_vertical);
+    tcase_add_test(test, camera_is_not_mirrored);
     tcase_add_test(test, defaults_where_the_file_says_nothing);
     tcase_add_test(test, material_factors);
     tcase_add_test(test, binary_with_buffers_elsewhere);
