@@ -6,6 +6,7 @@
 #include "scene/gltf_file.h"
 #include "scene/gltf_graph.h"
 
+#include <math.h>
 #include <string.h>
 
 static uint32_t word(const unsigned char *bytes)
@@ -60,6 +61,34 @@ static Result check_version(const char *path, const json_t *root)
     return RESULT_OK;
 }
 
+/* A number that is whole and exact in double as an integer; else itself. */
+static json_t *whole(json_t *value)
+{
+    double number = json_is_real(value) ? json_real_value(value) : 0.5;
+    bool is_whole =
+        floor(number) == number && fabs(number) <= 0x1p53 && (number || !signbit(number));
+    return is_whole ? json_integer((json_int_t)number) : json_incref(value);
+}
+
+/* 4, 4.0 and 4e0 are one number. Source: glTF 2.0, 2.8 (JSON encoding). */
+static void make_whole(json_t *value)
+{
+    const char *key;
+    void *next;
+    json_t *part;
+    size_t i;
+    json_object_foreach_safe(value, next, key, part)
+    {
+        make_whole(part);
+        json_object_set_new(value, key, whole(part));
+    }
+    json_array_foreach(value, i, part)
+    {
+        make_whole(part);
+        json_array_set_new(value, i, whole(part));
+    }
+}
+
 static Result parse(const char *path, GltfJson *json)
 {
     size_t count = 0, length = 0;
@@ -80,7 +109,9 @@ static Result parse(const char *path, GltfJson *json)
         return result;
     json_error_t error;
     json_memory_begin();
-    json->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
+    /* Integers of any size, in extras, say; of equal names the last counts, as glTF advises. */
+    json->root = json_loadb(text, length, JSON_DECODE_INT_AS_REAL, &error);
+    make_whole(json->root);
     result = json_memory_check(path, RESULT_OK);
     if (result)
         return result;

@@ -212,6 +212,24 @@ START_TEST(camera_is_not_mirrored)
 }
 END_TEST
 
+/* 0, 0.0 and 0e0 are one number, integers may be of any size, and of equal names the last counts
+ * (glTF 2.0, 2.8). */
+START_TEST(numbers_and_names)
+{
+    Scene scene;
+    load_quad("\"meshes\":[{\"primitives\":[{\"mode\":4.0,\"attributes\":{\"POSITION\":0e0,"
+              "\"NORMAL\":1.0},\"indices\":20e-1}]}],\"scene\":0.0,\"scenes\":[{\"nodes\":[7],"
+              "\"nodes\":[0.0]}],\"nodes\":[{\"mesh\":0.0,\"translation\":[-0.0,1,2.5],"
+              "\"extras\":{\"id\":18446744073709551615}}]",
+              &scene);
+    ck_assert_uint_eq(scene.instance_count, 1);
+    ck_assert_uint_eq(scene.meshes[0].triangle_count, 2);
+    ck_assert_double_eq(scene.instances[0].world.m[13], 1.0);
+    ck_assert_double_eq(scene.instances[0].world.m[14], 2.5);
+    scene_free(&scene);
+}
+END_TEST
+
 START_TEST(camera_field_is_vertical)
 {
     static const char *const aspects[] = {"", ",\"aspectRatio\":1.7777778", ",\"aspectRatio\":0.5",
@@ -503,6 +521,7 @@ int main(void)
     tcase_add_test(test, data_files_are_current);
     tcase_add_test(test, unwritable_places);
     tcase_add_test(test, escaped_buffer_names);
+    tcase_add_test(test, numbers_and_names);
     tcase_add_test(test, camera_field_is_vertical);
     tcase_add_test(test, camera_is_not_mirrored);
     tcase_add_test(test, defaults_where_the_file_says_nothing);
