@@ -88,7 +88,9 @@ static uint32_t add_material(Loader *loader, const struct aiMaterial *from, cons
     material.metallic_roughness_texture = gltf_texture_add(
         &loader->textures, &loader->builder,
         gltf_surface_texture(loader->json, json, "metallicRoughnessTexture"), TEXTURE_LINEAR);
-    return builder_material(&loader->builder, &material, name.data);
+    /* Assimp cuts a long one off, within a character even. */
+    const char *own_name = json_string_value(json_object_get(json, "name"));
+    return builder_material(&loader->builder, &material, own_name ? own_name : name.data);
 }
 
 /* ---- nodes ---------------------------------------------------------------------------------- */

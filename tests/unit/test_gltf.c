@@ -212,6 +212,26 @@ START_TEST(camera_is_not_mirrored)
 }
 END_TEST
 
+START_TEST(long_name)
+{
+    enum {
+        LENGTH = 1400
+    };
+    char name[LENGTH + 1] = "", members[2048];
+    Scene scene;
+    for (int i = 0; i < LENGTH; i += 2)
+        memcpy(name + i, "\xc3\xa9", 2);
+    snprintf(members, sizeof members,
+             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2,"
+             "\"material\":0}]}],\"materials\":[{\"name\":\"y%s\"}]," ONE_NODE,
+             name);
+    load_quad(members, &scene);
+    ck_assert_uint_eq(scene.material_count, 1);
+    ck_assert_str_eq(scene.materials[0].name + 1, name);
+    scene_free(&scene);
+}
+END_TEST
+
 /* 0, 0.0 and 0e0 are one number, integers may be of any size, and of equal names the last counts
  * (glTF 2.0, 2.8). */
 START_TEST(numbers_and_names)
@@ -521,6 +541,7 @@ int main(void)
     tcase_add_test(test, data_files_are_current);
     tcase_add_test(test, unwritable_places);
     tcase_add_test(test, escaped_buffer_names);
+    tcase_add_test(test, long_name);
     tcase_add_test(test, numbers_and_names);
     tcase_add_test(test, camera_field_is_vertical);
     tcase_add_test(test, camera_is_not_mirrored);
