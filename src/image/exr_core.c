@@ -218,3 +218,25 @@ exr_result_t exr_choose_encoding(exr_context_t context, int part, exr_encode_pip
     }
     return code;
 }
+
+typedef exr_result_t (*Decompress)(exr_decode_pipeline_t *pipeline);
+
+static _Thread_local Decompress default_decompress;
+
+static exr_result_t decompress(exr_decode_pipeline_t *pipeline)
+{
+    if (pipeline->chunk.packed_size != pipeline->chunk.unpacked_size)
+        return default_decompress(pipeline);
+    memcpy(pipeline->unpacked_buffer, pipeline->packed_buffer, pipeline->chunk.packed_size);
+    return EXR_ERR_SUCCESS;
+}
+
+exr_result_t exr_choose_decoding(exr_context_t context, int part, exr_decode_pipeline_t *pipeline)
+{
+    exr_result_t code = exr_decoding_choose_default_routines(context, part, pipeline);
+    if (code == EXR_ERR_SUCCESS && pipeline->decompress_fn) {
+        default_decompress = pipeline->decompress_fn;
+        pipeline->decompress_fn = decompress;
+    }
+    return code;
+}

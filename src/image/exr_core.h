@@ -73,6 +73,9 @@ Result exr_output_fail(const ExrOutput *output, exr_result_t code);
  * mends what OpenEXRCore 3.1.5 gets wrong: what is as long packed as it was must be stored as it
  * was, or readers take one for the other. */
 exr_result_t exr_choose_encoding(exr_context_t context, int part, exr_encode_pipeline_t *pipeline);
+/* The same for reading, of flat pixels: B44 unpacks floats and integers that are stored as they
+ * were, without an error. */
+exr_result_t exr_choose_decoding(exr_context_t context, int part, exr_decode_pipeline_t *pipeline);
 
 /* The format that the part says it holds (EXR_FORMAT_ATTRIBUTE), if its channels can hold it. */
 bool exr_declared_format(const ExrReader *reader, int part, const exr_attr_chlist_t *list,

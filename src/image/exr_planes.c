@@ -102,7 +102,7 @@ static exr_result_t read_chunk(const ExrFile *file, int part, const exr_chunk_in
         return code;
     point_at(pipeline, planes, box[0], box[1]);
     if (first)
-        code = exr_decoding_choose_default_routines(context, part, pipeline);
+        code = exr_choose_decoding(context, part, pipeline);
     return code == EXR_ERR_SUCCESS ? exr_decoding_run(context, part, pipeline) : code;
 }
 

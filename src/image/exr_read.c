@@ -136,7 +136,7 @@ static Result read_chunks(const ExrReader *reader, int part, int first_y, int ch
         point_at(pipeline, image->format, image->width,
                  scratch ? (uint8_t *)scratch : image_pixel(image, 0, y));
         if (y == 0)
-            code = exr_decoding_choose_default_routines(context, part, pipeline);
+            code = exr_choose_decoding(context, part, pipeline);
         if (code == EXR_ERR_SUCCESS)
             code = exr_decoding_run(context, part, pipeline);
         if (code != EXR_ERR_SUCCESS)

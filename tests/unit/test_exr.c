@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/random.h"
+#include "image/exr_planes.h"
 #include "scratch.h"
 #include "testing.h"
 
@@ -168,6 +169,38 @@ START_TEST(test_files_of_others)
 }
 END_TEST
 
+/* B44 packs halves alone: floats lie in its chunks as they are. */
+START_TEST(test_compressions_of_others)
+{
+    static const char *const compressions[] = {"none", "rle", "zip", "zips", "piz", "b44", "b44a"};
+    const char *path = scratch_path("a.exr"), *other = scratch_path("b.exr");
+    Image image = noise(48, 36, FORMAT_RGBA32F, 1);
+    ck_assert_int_eq(exr_write(&image, path), RESULT_OK);
+    for (size_t i = 0; i < sizeof compressions / sizeof *compressions; i++) {
+        char command[256], text[1024], name[64];
+        Image back;
+        Planes planes;
+        ExrFile *file;
+        snprintf(command, sizeof command, "oiiotool %s --compression %s -o %s 2>&1", path,
+                 compressions[i], other);
+        ck_assert_int_eq(scratch_run(command, text, sizeof text), 0);
+        ck_assert_msg(exr_read(other, 0, &back, name) == RESULT_OK, "%s", result_message());
+        ck_assert_msg(memcmp(back.pixels, image.pixels, (size_t)48 * 36 * 16) == 0, "%s",
+                      compressions[i]);
+        image_free(&back);
+        ck_assert_int_eq(exr_file_open(other, &file), RESULT_OK);
+        ck_assert_int_eq(exr_file_planes(file, 0, SIZE_MAX, &planes), RESULT_OK);
+        const Plane *red = &planes.planes[planes_find(&planes, "R")];
+        for (size_t k = 0; k < (size_t)48 * 36; k++)
+            ck_assert_msg(memcmp(&red->bits[k], (float *)image.pixels + 4 * k, 4) == 0, "%s",
+                          compressions[i]);
+        planes_free(&planes);
+        exr_file_close(file);
+    }
+    image_free(&image);
+}
+END_TEST
+
 static void assert_refused(const char *path)
 {
     Image image;
@@ -290,6 +323,7 @@ int main(void)
     tcase_add_test(tests, test_many_parts);
     tcase_add_test(tests, test_other_reader);
     tcase_add_test(tests, test_files_of_others);
+    tcase_add_test(tests, test_compressions_of_others);
     tcase_add_test(tests, test_bad_files);
     tcase_add_test(tests, test_flipped_bits);
     tcase_add_test(tests, test_writer_failures);
