@@ -336,7 +336,7 @@ static Result diff(DiffCommand *command, DiffReport *report)
     fflush(stdout);
     if (result == RESULT_OK)
         result = diff_files(command->paths[0], command->paths[1], &command->files, report);
-    if (result == RESULT_OK && report->sizes_differ)
+    if (result == RESULT_OK && report->sizes_differ && !command->quiet)
         report_sizes(report);
     return result == RESULT_OK ? show(command, report) : result;
 }

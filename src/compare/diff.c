@@ -38,6 +38,8 @@ void diff_part_free(DiffPart *part)
     free(part->worst);
     free(part->values_block);
     free(part->name);
+    for (int side = 0; side < DIFF_SIDES; side++)
+        free(part->not_compared[side]);
     diff_part_release_pixels(part);
     *part = (DiffPart){0};
 }
@@ -169,6 +171,8 @@ Result diff_image(const Planes *a, const Planes *b, double scale, bool magnitude
     Result result = make_pairs(a, b, &pairs);
     if (result == RESULT_OK)
         result = planes_create(a->width, a->height, pairs.count, 0, "difference", out);
+    out->x = a->x;
+    out->y = a->y;
     for (int i = 0; i < pairs.count && result == RESULT_OK; i++) {
         result = planes_name(&out->planes[i], pairs.channels[i].name);
         difference(&pairs, i, scale, magnitude, &out->planes[i]);

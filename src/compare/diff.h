@@ -104,8 +104,9 @@ typedef struct DiffPart {
     uint64_t counts_differ;       /* deep: pixels with another number of samples */
     int count_at[2];              /* the first of them */
     uint32_t counts_there[DIFF_SIDES];
-    bool perceived; /* it was tested whether the difference is seen */
-    uint64_t seen;  /* and in so many pixels it is: a failure beyond fail.percent of them */
+    char *not_compared[DIFF_SIDES]; /* deep: channels of one side, commas between; NULL: none */
+    bool perceived;                 /* it was tested whether the difference is seen */
+    uint64_t seen; /* and in so many pixels it is: a failure beyond fail.percent of them */
     DiffVerdict verdict;
 } DiffPart;
 
@@ -113,15 +114,19 @@ typedef struct DiffPart {
  * those of a first. The caller frees with diff_part_free, after NO_MEMORY too. */
 Result diff_planes(const Planes *a, const Planes *b, const DiffOptions *options, DiffPart *out);
 
-/* Z, R, G, B, A, and depth.window, materialid and primitiveid where both sides have them: of all
- * samples of the pixels that have equally many on both sides. Others differ and fail. */
-Result diff_deep(const DeepImage *a, const DeepImage *b, const DiffOptions *options, DiffPart *out);
+/* Z, R, G, B, A, and depth.window, materialid and primitiveid where both sides have them, or of
+ * these only `channels` (commas between; NULL: all): of all samples of the pixels that have equally
+ * many on both sides. Others differ and fail. BAD_INPUT for a channel that is not compared,
+ * NO_MEMORY; the caller frees *out, after a failure too. */
+Result diff_deep(const DeepImage *a, const DeepImage *b, const char *channels,
+                 const DiffOptions *options, DiffPart *out);
 
 void diff_part_free(DiffPart *part);
 /* Only the figures stay. */
 void diff_part_release_pixels(DiffPart *part);
 
-/* (a − b) · scale of every channel, or its magnitude, as floats. The caller frees *out. */
+/* (a − b) · scale of every channel, or its magnitude, as floats, in the window of a. The caller
+ * frees *out. */
 Result diff_image(const Planes *a, const Planes *b, double scale, bool magnitude, Planes *out);
 
 #endif

@@ -1,50 +1,33 @@
 /* Deep images: counts of samples first, then the samples. */
+#include "base/text.h"
 #include "compare/diff_fold.h"
 
-#include <stddef.h>
 #include <string.h>
-
-enum {
-    REQUIRED = 5, /* Z, R, G, B, A */
-    CHANNELS = 8
-};
-
-static const struct {
-    const char *name;
-    FormatKind kind;
-    size_t offset; /* of its 4 bytes in DeepSample */
-    uint32_t none; /* the bits that a file without the channel has */
-} known[CHANNELS] = {
-    {"Z", KIND_FLOAT, offsetof(DeepSample, z), 0},
-    {"R", KIND_FLOAT, offsetof(DeepSample, rgba), 0},
-    {"G", KIND_FLOAT, offsetof(DeepSample, rgba) + 4, 0},
-    {"B", KIND_FLOAT, offsetof(DeepSample, rgba) + 8, 0},
-    {"A", KIND_FLOAT, offsetof(DeepSample, rgba) + 12, 0},
-    {"depth.window", KIND_FLOAT, offsetof(DeepSample, depth), 0},
-    {"materialid", KIND_UINT, offsetof(DeepSample, material), DEEP_NO_ID},
-    {"primitiveid", KIND_UINT, offsetof(DeepSample, primitive), DEEP_NO_ID},
-};
 
 typedef struct DeepPair {
     const DeepImage *sides[DIFF_SIDES];
-    int map[CHANNELS]; /* compared channel → row of known */
+    int map[DEEP_CHANNELS]; /* compared channel → of a sample */
     int count;
 } DeepPair;
 
-static uint32_t sample_bits(const DeepSample *sample, int row)
+/* In the order in which they are compared; the first ones every file has. */
+static const int order[DEEP_CHANNELS] = {DEEP_Z, DEEP_R,     DEEP_G,        DEEP_B,
+                                         DEEP_A, DEEP_DEPTH, DEEP_MATERIAL, DEEP_PRIMITIVE};
+
+static FormatKind stored_kind(const DeepImage *image, int channel)
 {
-    uint32_t bits;
-    memcpy(&bits, (const char *)sample + known[row].offset, sizeof bits);
-    return bits;
+    return image->half[channel] ? KIND_HALF : deep_channels[channel].kind;
 }
 
-static bool has_channel(const DeepImage *image, int row)
+/* As the file has it. */
+static uint32_t sample_bits(const DeepImage *image, const DeepSample *sample, int channel)
 {
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        for (uint32_t s = 0; s < image->counts[i]; s++)
-            if (sample_bits(&image->pixels[i][s], row) != known[row].none)
-                return true;
-    return false;
+    const char *at = (const char *)sample + deep_channels[channel].offset;
+    uint32_t bits;
+    float value;
+    memcpy(&bits, at, sizeof bits);
+    memcpy(&value, at, sizeof value);
+    return image->half[channel] ? half_from_float(value) : bits;
 }
 
 static uint32_t fetch(const void *context, int side, int channel, const DiffPixel *pixel)
@@ -52,7 +35,9 @@ static uint32_t fetch(const void *context, int side, int channel, const DiffPixe
     const DeepPair *pair = context;
     uint32_t count;
     const DeepSample *samples = deep_pixel(pair->sides[side], pixel->x, pixel->y, &count);
-    return pixel->sample < count ? sample_bits(&samples[pixel->sample], pair->map[channel]) : 0;
+    return pixel->sample < count
+               ? sample_bits(pair->sides[side], &samples[pixel->sample], pair->map[channel])
+               : 0;
 }
 
 static void compare_pixel(const DeepPair *pair, int x, int y, Fold *fold)
@@ -64,8 +49,8 @@ static void compare_pixel(const DeepPair *pair, int x, int y, Fold *fold)
     fold_pixel(fold, x, y);
     for (uint32_t s = 0; s < counts[0] && counts[0] == counts[1]; s++)
         for (int c = 0; c < pair->count; c++)
-            fold_value(fold, c, s, sample_bits(&a[s], pair->map[c]),
-                       sample_bits(&b[s], pair->map[c]));
+            fold_value(fold, c, s, sample_bits(pair->sides[0], &a[s], pair->map[c]),
+                       sample_bits(pair->sides[1], &b[s], pair->map[c]));
     if (counts[0] != counts[1]) {
         fold_break(fold);
         if (!part->counts_differ++) {
@@ -77,10 +62,67 @@ static void compare_pixel(const DeepPair *pair, int x, int y, Fold *fold)
     fold_pixel_end(fold);
 }
 
-Result diff_deep(const DeepImage *a, const DeepImage *b, const DiffOptions *options, DiffPart *out)
+static bool both_have(const DeepPair *pair, int channel)
+{
+    return !pair->sides[0]->missing[channel] && !pair->sides[1]->missing[channel];
+}
+
+/* −1 when it cannot be compared. */
+static int find_channel(const DeepPair *pair, const char *name, size_t length)
+{
+    for (int i = 0; i < DEEP_CHANNELS; i++)
+        if (strlen(deep_channels[i].name) == length &&
+            strncmp(deep_channels[i].name, name, length) == 0)
+            return both_have(pair, i) ? i : -1;
+    return -1;
+}
+
+static void choose(DeepPair *pair, int channel)
+{
+    for (int i = 0; i < pair->count; i++)
+        if (pair->map[i] == channel)
+            return; /* named twice */
+    pair->map[pair->count++] = channel;
+}
+
+/* Those of `channels` in their order; all that can be compared if it is NULL. */
+static Result choose_channels(DeepPair *pair, const char *channels)
+{
+    for (int i = 0; i < DEEP_CHANNELS && !channels; i++)
+        if (both_have(pair, order[i]))
+            choose(pair, order[i]);
+    for (const char *name = channels; name && *name;) {
+        size_t length = strcspn(name, ",");
+        int channel = find_channel(pair, name, length);
+        if (channel < 0)
+            return result_fail(RESULT_BAD_INPUT,
+                               "--channels %s: expected of deep images Z, R, G, B or A, or of "
+                               "depth.window, materialid and primitiveid what both have",
+                               channels);
+        choose(pair, channel);
+        name += length + (name[length] == ',');
+    }
+    return RESULT_OK;
+}
+
+/* What the image has, and is compared with nothing. */
+static Result list_others(const DeepImage *image, const DeepImage *other, char **out)
+{
+    Text names = {0};
+    for (int i = 0; i < DEEP_CHANNELS; i++)
+        if (!image->missing[order[i]] && other->missing[order[i]])
+            text_print(&names, "%s%s", names.count ? ", " : "", deep_channels[order[i]].name);
+    if (image->left_out)
+        text_print(&names, "%s%s", names.count ? ", " : "", image->left_out);
+    *out = names.bytes;
+    return names.result;
+}
+
+Result diff_deep(const DeepImage *a, const DeepImage *b, const char *channels,
+                 const DiffOptions *options, DiffPart *out)
 {
     DeepPair pair = {.sides = {a, b}};
-    FoldChannel channels[CHANNELS];
+    FoldChannel folded[DEEP_CHANNELS];
     Fold fold;
     *out = (DiffPart){.deep = true,
                       .x = a->has_window ? a->window.x : 0,
@@ -88,13 +130,17 @@ Result diff_deep(const DeepImage *a, const DeepImage *b, const DiffOptions *opti
                       .width = a->width,
                       .height = a->height,
                       .samples = {a->sample_count, b->sample_count}};
-    for (int row = 0; row < CHANNELS; row++)
-        if (row < REQUIRED || (has_channel(a, row) && has_channel(b, row))) {
-            FormatKind kind = known[row].kind;
-            channels[pair.count] = (FoldChannel){known[row].name, {true, true}, {kind, kind}, {0}};
-            pair.map[pair.count++] = row;
-        }
-    Result result = fold_begin(options, channels, pair.count, out, &fold);
+    Result result = choose_channels(&pair, channels);
+    for (int side = 0; side < DIFF_SIDES && result == RESULT_OK && !channels; side++)
+        result = list_others(pair.sides[side], pair.sides[1 - side], &out->not_compared[side]);
+    if (result != RESULT_OK)
+        return result;
+    for (int i = 0; i < pair.count; i++)
+        folded[i] = (FoldChannel){deep_channels[pair.map[i]].name,
+                                  {true, true},
+                                  {stored_kind(a, pair.map[i]), stored_kind(b, pair.map[i])},
+                                  {0}};
+    result = fold_begin(options, folded, pair.count, out, &fold);
     if (result == RESULT_OK) {
         for (int y = 0; y < a->height; y++)
             for (int x = 0; x < a->width; x++)

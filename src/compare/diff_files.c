@@ -231,8 +231,8 @@ static Result compare_deep(const Source sources[DIFF_SIDES], const char *name,
         result = exr_deep_read(sources[side].path, most, &images[side]);
     const DeepImage *a = &images[0], *b = &images[1];
     if (result == RESULT_OK && same_size(report, name, deep_size(a), deep_size(b))) {
-        DiffPart part;
-        result = diff_deep(a, b, &options->diff, &part);
+        DiffPart part = {0};
+        result = diff_deep(a, b, options->channels, &options->diff, &part);
         result = add_part(report, name, result, &part);
         if (result == RESULT_OK)
             picture(report, none);

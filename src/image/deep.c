@@ -2,7 +2,19 @@
 
 #include "base/memory.h"
 
+#include <stddef.h>
 #include <stdlib.h>
+
+const DeepChannel deep_channels[DEEP_CHANNELS] = {
+    [DEEP_A] = {"A", KIND_FLOAT, offsetof(DeepSample, rgba[3])},
+    [DEEP_B] = {"B", KIND_FLOAT, offsetof(DeepSample, rgba[2])},
+    [DEEP_G] = {"G", KIND_FLOAT, offsetof(DeepSample, rgba[1])},
+    [DEEP_R] = {"R", KIND_FLOAT, offsetof(DeepSample, rgba[0])},
+    [DEEP_Z] = {"Z", KIND_FLOAT, offsetof(DeepSample, z)},
+    [DEEP_DEPTH] = {"depth.window", KIND_FLOAT, offsetof(DeepSample, depth)},
+    [DEEP_MATERIAL] = {"materialid", KIND_UINT, offsetof(DeepSample, material)},
+    [DEEP_PRIMITIVE] = {"primitiveid", KIND_UINT, offsetof(DeepSample, primitive)},
+};
 
 struct DeepBlock {
     DeepBlock *next;
@@ -47,6 +59,7 @@ void deep_free(DeepImage *image)
     }
     free(image->counts);
     free(image->pixels);
+    free(image->left_out);
     *image = (DeepImage){0};
 }
 

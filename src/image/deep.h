@@ -22,6 +22,27 @@ typedef struct DeepSample {
     uint32_t material;  /* index into the scene's materials, or DEEP_NO_ID */
 } DeepSample;
 
+/* What a sample has, in the order of the names, which are OpenEXR's. */
+enum {
+    DEEP_A,
+    DEEP_B,
+    DEEP_G,
+    DEEP_R,
+    DEEP_Z,
+    DEEP_DEPTH,
+    DEEP_MATERIAL,
+    DEEP_PRIMITIVE,
+    DEEP_CHANNELS
+};
+
+typedef struct DeepChannel {
+    const char *name;
+    FormatKind kind; /* KIND_FLOAT or KIND_UINT */
+    size_t offset;   /* of its 4 bytes in DeepSample */
+} DeepChannel;
+
+extern const DeepChannel deep_channels[DEEP_CHANNELS];
+
 typedef struct DeepBlock DeepBlock;
 
 typedef struct DeepImage {
@@ -36,7 +57,10 @@ typedef struct DeepImage {
     /* Column-major, for column vectors. Camera: looks down −z, y up. NDC: x and y from −1 to 1, z
      * as the depth range has it. */
     float world_to_camera[16], world_to_ndc[16];
-    DeepBlock *blocks; /* private */
+    /* Of an image from a file. Names with commas between, owned; NULL: none. */
+    bool half[DEEP_CHANNELS], missing[DEEP_CHANNELS]; /* stored as half; not there at all */
+    char *left_out;                                   /* channels that a sample has no place for */
+    DeepBlock *blocks;                                /* private */
 } DeepImage;
 
 /* An image without samples. Fails with NO_MEMORY, naming the need, when that takes more than

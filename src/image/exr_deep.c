@@ -69,9 +69,11 @@ static exr_result_t write_header(exr_context_t context, const DeepImage *image)
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(context, index, image->width, image->height,
                                                    EXR_COMPRESSION_ZIPS);
-    for (int i = 0; i < EXR_DEEP_CHANNELS && code == EXR_ERR_SUCCESS; i++)
-        code = exr_add_channel(context, index, exr_deep_channels[i].name, exr_deep_channels[i].type,
-                               EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    for (int i = 0; i < DEEP_CHANNELS && code == EXR_ERR_SUCCESS; i++)
+        code =
+            exr_add_channel(context, index, deep_channels[i].name,
+                            deep_channels[i].kind == KIND_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+                            EXR_PERCEPTUALLY_LINEAR, 1, 1);
     if (code == EXR_ERR_SUCCESS)
         code = exr_attr_set_int(context, index, "maxSamplesPerPixel",
                                 most < INT_MAX ? (int32_t)most : INT_MAX);
@@ -102,13 +104,13 @@ static size_t pack_table(const DeepImage *image, int y, Row *row)
 static size_t pack_samples(const DeepImage *image, int y, Row *row, size_t *size)
 {
     uint8_t *out = row->raw;
-    for (int channel = 0; channel < EXR_DEEP_CHANNELS; channel++)
+    for (int channel = 0; channel < DEEP_CHANNELS; channel++)
         for (int x = 0; x < image->width; x++) {
             uint32_t count;
             const DeepSample *samples = deep_pixel(image, x, y, &count);
             for (uint32_t i = 0; i < count; i++, out += 4) {
                 uint32_t bits;
-                memcpy(&bits, (const char *)&samples[i] + exr_deep_channels[channel].offset,
+                memcpy(&bits, (const char *)&samples[i] + deep_channels[channel].offset,
                        sizeof bits);
                 put_u32(out, bits);
             }
@@ -135,13 +137,13 @@ static Result create_row(const DeepImage *image, const char *path, Row *out)
     uint64_t most = 0;
     for (int y = 0; y < image->height; y++) {
         uint64_t samples = row_samples(image, y);
-        if (samples > INT32_MAX / (4 * EXR_DEEP_CHANNELS))
+        if (samples > INT32_MAX / (4 * DEEP_CHANNELS))
             return result_fail(RESULT_UNSUPPORTED,
                                "%s: row %d has %llu samples, expected at most %d in deep EXR", path,
-                               y, (unsigned long long)samples, INT32_MAX / (4 * EXR_DEEP_CHANNELS));
+                               y, (unsigned long long)samples, INT32_MAX / (4 * DEEP_CHANNELS));
         most = samples > most ? samples : most;
     }
-    size_t table = 4 * (size_t)image->width, raw = 4 * EXR_DEEP_CHANNELS * (size_t)most;
+    size_t table = 4 * (size_t)image->width, raw = 4 * DEEP_CHANNELS * (size_t)most;
     raw = raw > table ? raw : table;
     out->raw = memory_array(raw, 1);
     out->scratch = memory_array(raw, 1);

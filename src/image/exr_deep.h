@@ -16,8 +16,8 @@
  * hold (2^31 bytes). */
 Result exr_deep_write(const DeepImage *image, const char *path);
 
-/* Reads the first part of deep scanlines of any file that has R, G, B, A and Z; other channels but
- * ours are left out, depth.window is 0 and ids are DEEP_NO_ID where they are missing. Samples come
+/* Reads the first part of deep scanlines of any file that has R, G, B, A and Z; other channels are
+ * left out, depth.window is 0 and ids are DEEP_NO_ID where they are missing (*out says which). Samples come
  * front to back, by Z and then as they lie in the file. UNSUPPORTED for tiles, and where ZBack
  * makes samples of a pixel overlap; BAD_INPUT for broken files and Z that is no number; NO_MEMORY
  * beyond max_bytes. The data window is the image. The caller frees *out; after a failure it is

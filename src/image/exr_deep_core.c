@@ -3,20 +3,8 @@
  * or run lengths. */
 #include "image/exr_deep_core.h"
 
-#include <stddef.h>
 #include <string.h>
 #include <zlib.h>
-
-const ExrDeepChannel exr_deep_channels[EXR_DEEP_CHANNELS] = {
-    [EXR_DEEP_A] = {"A", EXR_PIXEL_FLOAT, offsetof(DeepSample, rgba[3])},
-    [EXR_DEEP_B] = {"B", EXR_PIXEL_FLOAT, offsetof(DeepSample, rgba[2])},
-    [EXR_DEEP_G] = {"G", EXR_PIXEL_FLOAT, offsetof(DeepSample, rgba[1])},
-    [EXR_DEEP_R] = {"R", EXR_PIXEL_FLOAT, offsetof(DeepSample, rgba[0])},
-    [EXR_DEEP_Z] = {"Z", EXR_PIXEL_FLOAT, offsetof(DeepSample, z)},
-    [EXR_DEEP_DEPTH] = {"depth.window", EXR_PIXEL_FLOAT, offsetof(DeepSample, depth)},
-    [EXR_DEEP_MATERIAL] = {"materialid", EXR_PIXEL_UINT, offsetof(DeepSample, material)},
-    [EXR_DEEP_PRIMITIVE] = {"primitiveid", EXR_PIXEL_UINT, offsetof(DeepSample, primitive)},
-};
 
 size_t exr_deep_bound(size_t size)
 {

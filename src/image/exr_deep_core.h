@@ -1,31 +1,10 @@
-/* What the writer and the reader of deep files share: channels and the compression of chunks.
+/* What the writer and the reader of deep files share: the compression of chunks.
  * Private to src/image. */
 #ifndef PEEL_IMAGE_EXR_DEEP_CORE_H
 #define PEEL_IMAGE_EXR_DEEP_CORE_H
 
 #include "image/deep.h"
 #include "image/exr_core.h"
-
-/* In the order that a file has them: by name. */
-enum {
-    EXR_DEEP_A,
-    EXR_DEEP_B,
-    EXR_DEEP_G,
-    EXR_DEEP_R,
-    EXR_DEEP_Z,
-    EXR_DEEP_DEPTH,
-    EXR_DEEP_MATERIAL,
-    EXR_DEEP_PRIMITIVE,
-    EXR_DEEP_CHANNELS
-};
-
-typedef struct ExrDeepChannel {
-    const char *name;
-    exr_pixel_type_t type;
-    size_t offset; /* of its 4 bytes in DeepSample */
-} ExrDeepChannel;
-
-extern const ExrDeepChannel exr_deep_channels[EXR_DEEP_CHANNELS];
 
 /* Bytes that exr_deep_zip may need for size bytes. */
 size_t exr_deep_bound(size_t size);

@@ -3,6 +3,7 @@
 #include "image/exr_deep.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "image/exr_deep_core.h"
 
 #include <limits.h>
@@ -11,7 +12,7 @@
 #include <string.h>
 
 enum {
-    ZBACK = EXR_DEEP_CHANNELS, /* read, but not kept */
+    ZBACK = DEEP_CHANNELS, /* read, but not kept */
     UNUSED,
     DEFLATE_RATIO = 1032 /* no byte of deflate or run lengths gives more bytes */
 };
@@ -35,7 +36,7 @@ typedef struct DeepReader {
     exr_attr_box2i_t window;
     exr_compression_t compression;
     const exr_attr_chlist_t *list;
-    uint8_t *target;     /* of each channel in the file: EXR_DEEP_…, ZBACK or UNUSED */
+    uint8_t *target;     /* of each channel in the file: DEEP_…, ZBACK or UNUSED */
     size_t sample_bytes; /* of all channels */
     bool has_z_back;
     DeepImage *image;
@@ -78,9 +79,9 @@ static Result find_part(DeepReader *reader)
 
 static int find_target(const exr_attr_chlist_entry_t *channel)
 {
-    for (int i = 0; i < EXR_DEEP_CHANNELS; i++) {
-        bool id = exr_deep_channels[i].type == EXR_PIXEL_UINT;
-        if (strcmp(channel->name.str, exr_deep_channels[i].name) == 0)
+    for (int i = 0; i < DEEP_CHANNELS; i++) {
+        bool id = deep_channels[i].kind == KIND_UINT;
+        if (strcmp(channel->name.str, deep_channels[i].name) == 0)
             return !id || channel->pixel_type == EXR_PIXEL_UINT ? i : UNUSED;
     }
     return strcmp(channel->name.str, "ZBack") == 0 ? ZBACK : UNUSED;
@@ -91,11 +92,11 @@ static Result read_channels(DeepReader *reader)
     exr_result_t code = exr_get_channels(reader->file.context, reader->part, &reader->list);
     if (code != EXR_ERR_SUCCESS)
         return exr_reader_fail(&reader->file, code);
-    for (int i = 0; i <= EXR_DEEP_Z; i++) {
+    for (int i = 0; i <= DEEP_Z; i++) {
         exr_pixel_type_t type;
-        if (!exr_find_channel(reader->list, exr_deep_channels[i].name, &type))
+        if (!exr_find_channel(reader->list, deep_channels[i].name, &type))
             return result_fail(RESULT_UNSUPPORTED, "%s: no channel %s, expected R, G, B, A and Z",
-                               reader->file.path, exr_deep_channels[i].name);
+                               reader->file.path, deep_channels[i].name);
     }
     reader->target = memory_array((size_t)reader->list->num_channels, 1);
     if (!reader->target)
@@ -111,6 +112,27 @@ static Result read_channels(DeepReader *reader)
         reader->sample_bytes += channel->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
     }
     return RESULT_OK;
+}
+
+/* What the image tells of the file's channels. */
+static Result note_channels(const DeepReader *reader)
+{
+    DeepImage *image = reader->image;
+    Text names = {0};
+    for (int i = 0; i < DEEP_CHANNELS; i++)
+        image->missing[i] = true;
+    for (int i = 0; i < reader->list->num_channels; i++) {
+        const exr_attr_chlist_entry_t *channel = &reader->list->entries[i];
+        int target = reader->target[i];
+        if (target >= DEEP_CHANNELS) {
+            text_print(&names, "%s%s", names.count ? ", " : "", channel->name.str);
+            continue;
+        }
+        image->missing[target] = false;
+        image->half[target] = channel->pixel_type == EXR_PIXEL_HALF;
+    }
+    image->left_out = names.bytes;
+    return names.result;
 }
 
 static void read_camera(const DeepReader *reader)
@@ -161,7 +183,7 @@ static Result read_header(DeepReader *reader, size_t max_bytes)
                       display.min.y,        display.max.x,        display.max.y};
     if (result == RESULT_OK)
         read_camera(reader);
-    return result;
+    return result == RESULT_OK ? note_channels(reader) : result;
 }
 
 /* ---- rows ----------------------------------------------------------------------------------- */
@@ -243,9 +265,9 @@ static void unpack_channel(const uint8_t *in, exr_pixel_type_t type, int target,
             continue;
         }
         float value = to_float(in, type);
-        uint32_t id = exr_deep_channels[target].type == EXR_PIXEL_UINT ? get_u32(in) : 0;
-        void *to = (char *)&out[i].sample + exr_deep_channels[target].offset;
-        if (exr_deep_channels[target].type == EXR_PIXEL_UINT)
+        uint32_t id = deep_channels[target].kind == KIND_UINT ? get_u32(in) : 0;
+        void *to = (char *)&out[i].sample + deep_channels[target].offset;
+        if (deep_channels[target].kind == KIND_UINT)
             memcpy(to, &id, sizeof id);
         else
             memcpy(to, &value, sizeof value);

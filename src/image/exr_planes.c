@@ -265,12 +265,19 @@ static bool has_long_name(const Planes *planes)
 static exr_result_t write_header(exr_context_t context, const Planes *planes)
 {
     int part;
+    const exr_attr_box2i_t window = {
+        .min = {.x = planes->x, .y = planes->y},
+        .max = {.x = planes->x + planes->width - 1, .y = planes->y + planes->height - 1}};
     exr_result_t code = exr_set_longname_support(context, has_long_name(planes));
     if (code == EXR_ERR_SUCCESS)
         code = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(context, part, planes->width, planes->height,
                                                    EXR_COMPRESSION_ZIP);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_set_data_window(context, part, &window);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_set_display_window(context, part, &window);
     if (code == EXR_ERR_SUCCESS)
         code = exr_set_zip_compression_level(context, part, EXR_ZIP_LEVEL);
     for (int i = 0; i < planes->count && code == EXR_ERR_SUCCESS; i++)
@@ -286,7 +293,7 @@ static exr_result_t write_rows(exr_context_t context, const Planes *planes,
     exr_result_t code = exr_get_scanlines_per_chunk(context, 0, &rows);
     for (int y = 0; y < planes->height && code == EXR_ERR_SUCCESS; y += rows) {
         exr_chunk_info_t chunk;
-        code = exr_write_scanline_chunk_info(context, 0, y, &chunk);
+        code = exr_write_scanline_chunk_info(context, 0, planes->y + y, &chunk);
         if (code == EXR_ERR_SUCCESS)
             code = y ? exr_encoding_update(context, 0, &chunk, pipeline)
                      : exr_encoding_initialize(context, 0, &chunk, pipeline);

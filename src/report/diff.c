@@ -8,6 +8,15 @@
 #include <math.h>
 #include <string.h>
 
+/* Identifiers have more digits than a float. */
+static const char *value_text(const char *kind, double value, char out[SUMMARY_NUMBER])
+{
+    if (strcmp(kind, "uint") != 0)
+        return numeral_float(value, out);
+    snprintf(out, SUMMARY_NUMBER, "%.0f", value);
+    return out;
+}
+
 static void print_values(const DiffPart *part, const DiffPixel *pixel, FILE *out)
 {
     char number[SUMMARY_NUMBER];
@@ -17,7 +26,8 @@ static void print_values(const DiffPart *part, const DiffPixel *pixel, FILE *out
         for (int c = 0; c < part->channel_count; c++) {
             if (!part->channels[c].kinds[side])
                 continue;
-            fprintf(out, "%s%s", separator, numeral_float(pixel->values[side][c], number));
+            fprintf(out, "%s%s", separator,
+                    value_text(part->channels[c].kinds[side], pixel->values[side][c], number));
             separator = ", ";
         }
     }
@@ -110,7 +120,7 @@ static void print_nonfinite(const DiffPart *part, FILE *out)
         fprintf(out, " and %s infinite\n", summary_count(channel->infinite[1], number));
     }
     if (part->broken > part->counts_differ)
-        fprintf(out, "  %s pixels are finite on one side only: a failure\n",
+        fprintf(out, "  %s pixels are not finite, and not alike: a failure\n",
                 summary_count(part->broken - part->counts_differ, number));
 }
 
@@ -143,7 +153,9 @@ static void print_worst(const ReportDiff *diff, const DiffPart *part, FILE *out)
         snprintf(place, sizeof place, "%d, %d", part->x + pixel->x, part->y + pixel->y);
         fprintf(out, "  %-12s %-12s %11s %13s  ", place,
                 pixel->counts ? "samples" : part->channels[pixel->channel].name,
-                isinf(pixel->error) ? "not finite" : numeral_float(pixel->error, error),
+                pixel->counts         ? "count"
+                : isinf(pixel->error) ? "not finite"
+                                      : numeral_float(pixel->error, error),
                 pixel->has_ulp ? summary_count(pixel->ulp, ulp) : "-");
         if (classes) {
             size_t at = (size_t)pixel->y * (size_t)part->width + (size_t)pixel->x;
@@ -170,6 +182,17 @@ static void print_missing_channels(const ReportDiff *diff, const DiffPart *part,
         if (*separator)
             fprintf(out, " of \"%s\"; --channels leaves them out\n", diff->report->paths[side]);
     }
+}
+
+/* Whether they differ or not: what a verdict is not of. */
+static void print_not_compared(const ReportDiff *diff, FILE *out)
+{
+    const DiffReport *report = diff->report;
+    for (size_t i = 0; i < report->count; i++)
+        for (int side = 0; side < DIFF_SIDES; side++)
+            if (report->parts[i].not_compared[side])
+                fprintf(out, "Not compared: %s of \"%s\"\n", report->parts[i].not_compared[side],
+                        report->paths[side]);
 }
 
 /* ---- parts ---- */
@@ -291,6 +314,7 @@ void report_diff_print(const ReportDiff *diff, bool verbose, FILE *out)
     print_parts(diff, verbose, out);
     if (report->deep_differs)
         fprintf(out, "One image contains deep data, the other does not\n");
+    print_not_compared(diff, out);
     if (report->left_out)
         fprintf(out, "Left out: %d *.primitive buffers, which only one trace has\n",
                 report->left_out);

@@ -101,6 +101,11 @@ static void put_figures(Document *json, const DiffPart *part, json_t *one)
         return;
     document_put(json, one, "samples", pair_of_counts(part->samples[0], part->samples[1]));
     document_put(json, one, "counts_differ", document_count(part->counts_differ));
+    json_t *others = json_array();
+    for (int side = 0; side < DIFF_SIDES; side++)
+        document_append(json, others,
+                        document_string(part->not_compared[side] ? part->not_compared[side] : ""));
+    document_put(json, one, "not_compared", others);
 }
 
 static json_t *part_of(Document *json, const ReportDiff *diff, const DiffPart *part)

@@ -137,13 +137,18 @@ exits 0 'a relative one' "$peel" diff -fail 1 -warnrelative .6 a.exr b.exr
 exits 3 'sizes' "$peel" diff a.exr wide.exr
 has 'sizes' '^peel: sizes differ: a.exr has 8x6 pixels, wide.exr has 9x6$'
 exits 3 'sizes, quietly' "$peel" diff -q a.exr wide.exr --json sizes.json -o sizes.png
+check 'sizes, quietly: nothing' test ! -s output
 exits 0 'sizes in JSON' grep -q '"verdict": "sizes"' sizes.json
 exits 1 'no picture of sizes' test -e sizes.png
 exits 3 'windows' "$peel" diff a.exr moved.exr
 has 'windows' 'a.exr has 8x6 pixels from 0,0, moved.exr has 8x6 from 1,0$'
+oiiotool b.exr --origin +1+0 -o moved_b.exr
+exits 2 'the window of both' "$peel" diff moved.exr moved_b.exr -o moved_difference.exr
+oiiotool --info -v moved_difference.exr >output
+has 'the window of both' 'pixel data origin: x=1, y=0'
 for other in a inf minus; do
     exits 2 "NaN and $other" "$peel" diff -fail 9 -warn 9 -failpercent 100 nan.exr $other.exr
-    has 'NaN' '48 pixels are finite on one side only: a failure'
+    has 'NaN' '48 pixels are not finite, and not alike: a failure'
 done
 exits 2 'infinities' "$peel" diff inf.exr minus.exr
 has 'infinities' 'Not finite: R: 0 NaN and 48 infinite vs 0 NaN and 48 infinite'
@@ -182,6 +187,11 @@ exits 0 'what may be seen' "$peel" diff -p -fail 1 -warn 1 -failpercent 12.5 a.e
 exits 0 'what is not seen' "$peel" diff -p -v a.exr a.exr
 has 'what is not seen' '^  0 pixels (  0%) failed the perceptual test$'
 
+oiiotool --create 8x6 1 -d uint32 --fill:color=0.5 8x6 -d uint32 -o ids.exr
+oiiotool --create 8x6 1 -d uint32 --fill:color=0.75 8x6 -d uint32 -o other_ids.exr
+exits 2 'identifiers' "$peel" diff ids.exr other_ids.exr
+has 'identifiers' 'values are [0-9]\{10\} vs [0-9]\{10\}$'
+
 # Deep images and traces.
 for alpha in 0.5 0.25; do
     exits 0 'deep' "$peel" render tutorial --size 48x32 --lights 4 --opacity $alpha --with truth \
@@ -197,6 +207,15 @@ exits 2 'deep' "$peel" diff deep0.5.exr deep0.25.exr -o deep.png
 has 'deep' '^  Z  *float  *0  *0 '
 has 'deep' '^  A  *float  *0.25  *0.25 '
 has 'deep' 'as many in every pixel$'
+check 'deep: all of it' sh -c '! grep "Not compared" output'
+oiiotool deep0.5.exr -d half --ch R,G,B,A,Z,AR=R -o deep_half.exr
+exits 2 'deep, other channels' "$peel" diff deep_half.exr deep0.25.exr
+has 'deep, other channels' '^Not compared: AR of "deep_half.exr"$'
+has 'deep, other channels' '^Not compared: depth.window, materialid, primitiveid of "deep0.25.exr"$'
+has 'deep, other channels' '^  A  *half/float '
+exits 2 'deep, one channel' "$peel" diff --channels A deep0.5.exr deep0.25.exr
+check 'deep: one channel' sh -c '! grep "^  [ZRGB] " output'
+exits 0 'deep, channels alike' "$peel" diff --channels Z,primitiveid deep0.5.exr deep0.25.exr
 exits 2 'deep, counts' "$peel" diff deep0.5.exr more.exr
 has 'deep, counts' 'pixels have another number: a failure; first @ ('
 exits 2 'deep and flat' "$peel" diff deep0.5.exr a.exr
@@ -260,6 +279,8 @@ refuse '-warnpercent' 'from 0 to 100' -warnpercent nan a.exr b.exr
 refuse '-allowfailures' 'a whole number' -allowfailures 1.5 a.exr b.exr
 refuse '-scale' 'expected a number' -scale x a.exr b.exr
 refuse '-o' 'a name ending in .png or .exr' -o out.jpg a.exr b.exr
+refuse '--channels of deep images' 'expected of deep images Z, R, G, B or A' --channels AR \
+    deep0.5.exr deep0.25.exr
 refuse '-o of deep images' 'only a heat map' -o out.exr deep0.5.exr deep0.25.exr
 refuse '--worst' 'from 0 to' --worst -1 a.exr b.exr
 refuse 'unknown' "'-foo' is no option" -foo a.exr b.exr

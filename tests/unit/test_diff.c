@@ -377,7 +377,9 @@ START_TEST(test_deep)
     memcpy(b, a, sizeof b);
     b[2].rgba[1] = 0.5f;
     DeepImage image_a = deep_row(counts_a, a, 3), image_b = deep_row(counts_a, b, 3);
-    ck_assert_int_eq(diff_deep(&image_a, &image_b, &options, &part), RESULT_OK);
+    image_a.missing[DEEP_DEPTH] = image_b.missing[DEEP_MATERIAL] = true;
+    image_b.left_out = strdup("ZBack");
+    ck_assert_int_eq(diff_deep(&image_a, &image_b, NULL, &options, &part), RESULT_OK);
     ck_assert_int_eq(part.channel_count, 6); /* there is no window depth and no material */
     ck_assert_str_eq(part.channels[5].name, "primitiveid");
     ck_assert_uint_eq(part.channels[0].values, 4);
@@ -386,6 +388,25 @@ START_TEST(test_deep)
     ck_assert_uint_eq(part.max_at.sample, 1);
     ck_assert_double_eq(part.max_at.values[0][0], 3.0);
     ck_assert_uint_eq(part.counts_differ, 0);
+    ck_assert_str_eq(part.not_compared[0], "materialid");
+    ck_assert_str_eq(part.not_compared[1], "depth.window, ZBack");
+    diff_part_free(&part);
+    ck_assert_int_eq(diff_deep(&image_a, &image_b, "A,R,A", &options, &part), RESULT_OK);
+    ck_assert_int_eq(part.channel_count, 2);
+    ck_assert_str_eq(part.channels[0].name, "A");
+    ck_assert_ptr_null(part.not_compared[1]);
+    ck_assert_int_eq(part.verdict, DIFF_PASS); /* what differs is G */
+    diff_part_free(&part);
+    static const char *const refused[] = {"materialid", "ZBack", "R,,G", "Z,q", "depth"};
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        ck_assert_int_eq(diff_deep(&image_a, &image_b, refused[i], &options, &part),
+                         RESULT_BAD_INPUT);
+        diff_part_free(&part);
+    }
+    image_a.half[DEEP_G] = image_b.half[DEEP_G] = true;
+    ck_assert_int_eq(diff_deep(&image_a, &image_b, "G", &options, &part), RESULT_OK);
+    ck_assert_str_eq(part.channels[0].kinds[0], "half");
+    ck_assert_uint_eq(part.channels[0].max_ulp, 0x3800); /* the half 0.5 */
     diff_part_free(&part);
     deep_free(&image_b);
 
@@ -393,7 +414,7 @@ START_TEST(test_deep)
     image_b = deep_row(counts_b, a, 3);
     options.fail.absolute = options.warn.absolute = 1e9;
     options.fail.allowed = 3;
-    ck_assert_int_eq(diff_deep(&image_a, &image_b, &options, &part), RESULT_OK);
+    ck_assert_int_eq(diff_deep(&image_a, &image_b, NULL, &options, &part), RESULT_OK);
     ck_assert_uint_eq(part.channels[0].values, 1);
     ck_assert_uint_eq(part.counts_differ, 2);
     ck_assert_int_eq(part.count_at[0], 1);
