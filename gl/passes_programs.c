@@ -15,6 +15,14 @@ static bool is_textured(const Passes *passes)
     return has(passes, NEED_BASE_COLOR_TEXTURE) || has(passes, NEED_MATERIAL_TEXTURE);
 }
 
+static bool stores_halves(const Passes *passes)
+{
+    bool stores = passes->desc->accum == FORMAT_RGBA16F;
+    for (int i = 0; i < GBUFFER_TARGETS; i++)
+        stores |= passes->targets.color_format[i] == FORMAT_RGBA16F;
+    return stores;
+}
+
 static bool reconstructs(const Passes *passes)
 {
     return render_desc_layout(passes->desc).position == FORMAT_NONE;
@@ -41,6 +49,7 @@ static void write_defines(const Passes *passes, const char *defines, char *out, 
         {has(passes, NEED_MATERIAL_TEXTURE), "MATERIAL_TEXTURE"},
         {has(passes, NEED_MASK), "MASKED"},
         {has(passes, NEED_CULLING), "CULLED"},
+        {stores_halves(passes), "HALF_TARGET"},
         {desc->normals == NORMALS_FACED && has(passes, NEED_FACING), "FACED"},
         {!has(passes, NEED_NORMAL), "NO_NORMAL"},
         {!needs_lit_position(&passes->needs), "NO_POSITION"},

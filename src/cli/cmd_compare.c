@@ -37,7 +37,8 @@ static const struct argp_option command_options[] = {
      0},
     {"tolerance", KEY_TOLERANCE, "T", 0,
      "Allowed difference from truth at the 99th percentile, relative to max(1, value), where both "
-     "see the same fragments in the same order (default: the method's, see peel methods)",
+     "see the same fragments in the same order (default: the method's, see peel methods); what "
+     "approximates is not judged",
      0},
     {"budget", KEY_BUDGET, 0, 0,
      "Also render with one thing changed at a time, and say what each adds to the difference "

@@ -227,6 +227,44 @@ START_TEST(test_tiny_varyings)
 }
 END_TEST
 
+/* A triangle behind another, and a background that only a thread which flushes takes for black:
+ * where the depth test hides 4x4 pixels that would be stored as halves, Mesa's threads stop to. */
+START_TEST(test_hidden_behind_halves)
+{
+    static const float position[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    static const float normal[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+    static const uint32_t index[] = {0, 1, 2, 0, 2, 3};
+    Mesh mesh = {.vertex_count = 4, .triangle_count = 2};
+    mesh.position = memory_array(12, sizeof(float));
+    mesh.normal = memory_array(12, sizeof(float));
+    mesh.index = memory_array(6, sizeof(uint32_t));
+    memcpy(mesh.position, position, sizeof position);
+    memcpy(mesh.normal, normal, sizeof normal);
+    memcpy(mesh.index, index, sizeof index);
+
+    Builder builder = builder_begin("hidden");
+    builder_mesh(&builder, RESULT_OK, &mesh);
+    builder_material(&builder,
+                     &(Material){.base_color = {1, 1, 1, 1}, .occlusion = 1, .double_sided = true},
+                     NULL);
+    for (int i = 0; i < 2; i++)
+        builder_instance(&builder, &(Instance){.world = matrix_translate(0, 0, (float)-i)}, NULL);
+    builder_light(&builder, &(Light){.color = {1, 1, 1}, .attenuation = {0, 0, 1}});
+    builder_camera(
+        &builder,
+        &(Camera){.world = matrix_translate(0, 0, 3), .yfov = 0.8, .near = 0.1, .far = 100}, NULL);
+    Scene scene;
+    ck_assert_msg(builder_finish(&builder, &scene) == RESULT_OK, "%s", result_message());
+    memcpy(scene.background, (float[]){1e-40f, 0.3f, 0.5f}, sizeof scene.background);
+
+    RenderDesc desc = {.width = 64, .height = 64, .gbuffer = GBUFFER_SEED};
+    Threeway report = run(&scene, &desc, honest);
+    check_ref_gl(&report);
+    threeway_free(&report);
+    scene_free(&scene);
+}
+END_TEST
+
 /* ---- broken renderers -------------------------------------------------------------------------
  */
 
@@ -453,6 +491,7 @@ int main(void)
     tcase_add_test(tcase, test_nothing_transparent);
     tcase_add_test(tcase, test_empty_view);
     tcase_add_loop_test(tcase, test_tiny_varyings, 0, 5);
+    tcase_add_test(tcase, test_hidden_behind_halves);
     tcase_add_loop_test(tcase, test_broken_renderer, 0, FAULT_COUNT);
     tcase_add_test(tcase, test_blind_truth);
     tcase_add_test(tcase, test_wrong_truth);
