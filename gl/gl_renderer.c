@@ -10,6 +10,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+enum {
+    LLVMPIPE_STEPS = 65535 /* of a loop. Source: Mesa's lp_bld_limits.h */
+};
+
 struct GlSession {
     Context *context;
     RenderDesc desc;
@@ -81,12 +85,19 @@ static __attribute__((noinline)) Result set_up(GlSession *session, Frame *unused
     if (session->fuses == FUSES_UNKNOWN)
         result_warn("%s does not interpolate as llvmpipe does: its bits will differ from ref's",
                     (const char *)gl.GetString(GL_RENDERER));
+    else if (session->view.light_count > LLVMPIPE_STEPS)
+        return result_fail(RESULT_UNSUPPORTED,
+                           "gl: %zu lights, expected at most %d: llvmpipe ends every loop of a "
+                           "shader there",
+                           session->view.light_count, LLVMPIPE_STEPS);
     session->opened = clock_now();
     Passes in = session->passes;
     result = passes_create(&in, &session->passes);
     if (result != RESULT_OK)
         return result;
-    if (!needs_has(&session->passes.needs, NEED_TRANSPARENT) && !session->passes.options.every_pass)
+    bool opaque = needs_has(&session->passes.needs, NEED_OPAQUE);
+    bool transparent = needs_has(&session->passes.needs, NEED_TRANSPARENT);
+    if (!transparent && !(opaque && session->passes.options.every_pass))
         session->method = &opaque_only;
     session->state = memory_array(1, session->method->state_size);
     if (!session->state)

@@ -276,6 +276,28 @@ START_TEST(test_memory_limit)
 }
 END_TEST
 
+START_TEST(test_light_limit)
+{
+    enum {
+        MOST = 65535
+    };
+    Scene scene = quad_scene(layered, 1);
+    RenderDesc desc = {.width = 2, .height = 2};
+    Frame frame;
+    free(scene.lights);
+    scene.lights = memory_array(MOST + 1, sizeof *scene.lights);
+    for (int i = 0; i <= MOST; i++)
+        scene.lights[i] = (Light){.color = {1, 1, 1}, .attenuation = {1, 0, 0}};
+    scene.light_count = MOST;
+    ck_assert_msg(gl_render(&scene, &desc, NULL, &frame) == RESULT_OK, "%s", result_message());
+    frame_free(&frame);
+    scene.light_count = MOST + 1;
+    ck_assert_int_eq(gl_render(&scene, &desc, NULL, &frame), RESULT_UNSUPPORTED);
+    ck_assert_ptr_nonnull(strstr(result_message(), "65536 lights, expected at most 65535"));
+    scene_free(&scene);
+}
+END_TEST
+
 /* ---- arithmetic mode ---------------------------------------------------------------------------
  */
 
@@ -321,6 +343,7 @@ int main(void)
     tcase_add_test(tcase, test_shader_errors_become_results);
     tcase_add_test(tcase, test_missing_entry_point_is_named);
     tcase_add_test(tcase, test_memory_limit);
+    tcase_add_test(tcase, test_light_limit);
     tcase_add_test(tcase, test_mode_is_found);
     suite_add_tcase(suite, tcase);
     return testing_run(suite);
