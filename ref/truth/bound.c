@@ -8,6 +8,7 @@
 #include "ref/truth/single.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     KEPT = 128 /* triangles: those of some pixels of a row, layer by layer */
@@ -273,6 +274,14 @@ static void store_surface(const View *view, const RenderDesc *desc, Bounded dept
     surface->occlusion = bound_store(layout.material, surface->occlusion);
 }
 
+/* Of what is not of length 1 the distribution's two forms are not the same, and the truth has the
+ * other one. */
+static bool may_be_short(const Bounded normal[3])
+{
+    Bounded length2 = bounded_dot(normal, normal);
+    return length2.value - largest(length2.exact, length2.single) <= (double)SHADING_TINY;
+}
+
 void bound_surface(BoundTriangles *triangles, const RenderDesc *desc, const Fragment *fragment,
                    int x, int y, BoundedSurface *surface)
 {
@@ -296,6 +305,8 @@ void bound_surface(BoundTriangles *triangles, const RenderDesc *desc, const Frag
             normal[i].single += 2.0 * fabs(normal[i].value);
     }
     radiance_normalize_bound(normal, surface->normal);
+    for (int i = 0; i < 3 && desc->ggx == GGX_STABLE && may_be_short(normal); i++)
+        unknown(&surface->normal[i]);
     bound_material(soup->textures, material, &point.attribute[SINGLE_UV], surface);
     if (!triangle->draw->draw->transparent)
         surface->diffuse[3] = bounded_of(1.0);
@@ -305,14 +316,35 @@ void bound_surface(BoundTriangles *triangles, const RenderDesc *desc, const Frag
 
 /* ---- blending -------------------------------------------------------------------------------- */
 
+/* What single precision has may be this, too. */
+static void may_be(Bounded other, Bounded *x)
+{
+    x->single = largest(x->single, other.single + fabs(other.value - x->value));
+}
+
 /* A fragment that the alpha test may or may not discard: its whole contribution is in doubt. */
 static void doubt(const Bounded before[4], Bounded rgba[4])
 {
     for (int i = 0; i < 4; i++) {
         double change = fabs(rgba[i].value - before[i].value);
-        rgba[i].exact = largest(rgba[i].exact, before[i].exact) + change;
-        rgba[i].single = largest(rgba[i].single, before[i].single) + change;
+        rgba[i].exact = largest(rgba[i].exact, before[i].exact + change);
+        may_be(before[i], &rgba[i]);
     }
+}
+
+/* A forward method does not shade what is not opaque enough, but stores its alpha, which may be
+ * rounded to more and be blended. */
+static void blend_unshaded(const RenderDesc *desc, Bounded alpha, Bounded rgba[4])
+{
+    Bounded source[4] = {bounded_of(0.0), bounded_of(0.0), bounded_of(0.0),
+                         bound_store(render_desc_layout(desc).diffuse, alpha)};
+    Bounded blended[4];
+    if (source[3].value + source[3].single <= (double)SHADING_ALPHA_TEST)
+        return;
+    memcpy(blended, rgba, sizeof blended);
+    bound_blend_under(desc->accum, source, blended);
+    for (int i = 0; i < 4; i++)
+        may_be(blended[i], &rgba[i]);
 }
 
 void bound_blend(BoundTriangles *triangles, const RenderDesc *desc, const Fragment *fragment, int x,
@@ -326,13 +358,17 @@ void bound_blend(BoundTriangles *triangles, const RenderDesc *desc, const Fragme
     const double test = (double)SHADING_ALPHA_TEST;
     Bounded alpha = surface.diffuse[3], source[4], before[4];
     double error = largest(alpha.exact, alpha.single);
-    if (alpha.value + error <= test)
+    bool forward = desc->method == METHOD_FORWARD;
+    if (alpha.value + error <= test) {
+        if (forward)
+            blend_unshaded(desc, alpha, rgba);
         return;
+    }
     radiance_shade_bound(soup->view, &surface, form, source);
     GBufferLayout layout = render_desc_layout(desc);
     for (int i = 0; i < 4; i++) {
         source[i] = i < 3 ? bounded_mul(source[i], alpha) : alpha;
-        if (desc->method == METHOD_FORWARD)
+        if (forward)
             source[i] = bound_store(layout.diffuse, source[i]);
         before[i] = rgba[i];
     }
@@ -341,6 +377,9 @@ void bound_blend(BoundTriangles *triangles, const RenderDesc *desc, const Fragme
         rgba[3] = bounded_of(0.0); /* whatever is there, the resolve takes it so */
     if (alpha.value - error <= test)
         doubt(before, rgba);
+    /* A forward method tests again what it stored. */
+    for (int i = 0; i < 4 && forward && source[3].value - source[3].single <= test; i++)
+        may_be(before[i], &rgba[i]);
 }
 
 void bound_resolve(const View *view, PixelFormat accum, Bounded rgba[4])

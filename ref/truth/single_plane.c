@@ -94,6 +94,9 @@ static double plane_rounding(const SingleViewport *viewport, const Piece *piece,
     if (!viewport->fused)
         error += U * 1.001 * (forth_x + forth_y);
     error += BOUNDED_TINY * (8.0 + to_x + to_y + from_x + from_y);
+    double largest = start + d01 + d20 + sum_x + sum_y + back_x + back_y + forth_x + forth_y;
+    if (!(largest <= 0.5 * (double)FLT_MAX))
+        return (double)INFINITY;
     return error * (1.0 + 0x1p-20);
 }
 
@@ -184,6 +187,8 @@ static double varying_error(const SingleTriangle *triangle, const Piece *piece,
         return (double)INFINITY;
     error = error / least;
     error += 2.001 * U * (size + error) + BOUNDED_TINY * (1.0 + 1.0 / least);
+    if (!(size + error <= 0.5 * (double)FLT_MAX))
+        return (double)INFINITY;
     return bounded_limit((error + r.exact) * (1.0 + 0x1p-20));
 }
 

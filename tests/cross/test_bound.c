@@ -8,8 +8,10 @@
 #include "testing.h"
 #include "truths.h"
 
+#include "base/memory.h"
 #include "frame/method.h"
 #include "ref/truth/truth.h"
+#include "scene/builder.h"
 #include "scene/generate.h"
 
 #include <stdio.h>
@@ -115,6 +117,72 @@ START_TEST(test_scenes)
         ck_assert_double_gt(bound.median_ratio, i == 3 ? 1e-3 : i == 0 ? 3e-3 : 0.0);
     }
     fflush(stdout);
+    scene_free(&scene);
+}
+END_TEST
+
+/* ---- panes that random scenes found ---------------------------------------------------------- */
+
+/* A pane at the distance 2·size that a light at the height of the eye shines on. */
+static const struct {
+    const char *name;
+    float size, normal[3], alpha;
+    RenderDesc desc;
+} panes[] = {
+    {"alpha that 8 bits round to 0, tested again",
+     1,
+     {0, 0, 1},
+     0.0019f,
+     {.method = METHOD_FORWARD, .gbuffer = GBUFFER_SEED, .accum = FORMAT_RGBA8}},
+    {"alpha that 16 bits round to more than the test",
+     1,
+     {0, 0, 1},
+     0.0001f,
+     {.method = METHOD_FORWARD, .gbuffer = GBUFFER_SEED, .accum = FORMAT_RGBA16}},
+    {"normals that overflow over w", 1e-25f, {0, 6e14f, 8e14f}, 0.5f, {.shading = SHADING_PHONG}},
+    {"normals too short for the guard", 1, {0, 0, 5e-11f}, 0.5f, {.ggx = GGX_STABLE}},
+};
+
+START_TEST(test_panes)
+{
+    const float size = panes[_i].size, *normal = panes[_i].normal;
+    static const float corners[4][2] = {{-0.9f, -0.9f}, {0.9f, -0.9f}, {0.9f, 0.9f}, {-0.9f, 0.9f}};
+    static const uint32_t index[] = {0, 1, 2, 0, 2, 3};
+    Mesh mesh = {.vertex_count = 4, .triangle_count = 2};
+    mesh.position = memory_array(12, sizeof(float));
+    mesh.normal = memory_array(12, sizeof(float));
+    mesh.index = memory_array(6, sizeof(uint32_t));
+    memcpy(mesh.index, index, sizeof index);
+    for (int i = 0; i < 4; i++) {
+        const float corner[3] = {corners[i][0] * size, corners[i][1] * size, -2.0f * size};
+        memcpy(mesh.position + 3 * i, corner, sizeof corner);
+        memcpy(mesh.normal + 3 * i, normal, 3 * sizeof *normal);
+    }
+    Builder builder = builder_begin(panes[_i].name);
+    builder_mesh(&builder, RESULT_OK, &mesh);
+    builder_material(&builder,
+                     &(Material){.base_color = {1, 0.5f, 0.25f, panes[_i].alpha},
+                                 .roughness = 0.3f,
+                                 .occlusion = 1,
+                                 .alpha_mode = ALPHA_BLEND,
+                                 .double_sided = true},
+                     NULL);
+    builder_instance(&builder, &(Instance){.world = matrix_identity()}, NULL);
+    builder_light(&builder, &(Light){.position = {0.3f, 0.3f, 1},
+                                     .color = {1500, 1500, 1500},
+                                     .attenuation = {1, 0, 0}});
+    builder_camera(&builder,
+                   &(Camera){.world = matrix_identity(),
+                             .yfov = 1.0,
+                             .near = 0.5 * (double)size,
+                             .far = 10 * (double)size},
+                   NULL);
+    Scene scene;
+    ok(builder_finish(&builder, &scene));
+    RenderDesc desc = panes[_i].desc;
+    desc.width = desc.height = 8;
+    BoundMetrics bound = compare(&scene, &desc, panes[_i].name);
+    ck_assert_uint_ge(bound.pixels, 16);
     scene_free(&scene);
 }
 END_TEST
@@ -226,6 +294,7 @@ int main(void)
     tcase_set_timeout(tcase, 0); /* CTest's */
     if (!getenv("PEEL_TEST_SEED"))
         tcase_add_loop_test(tcase, test_scenes, 0, (int)(sizeof scenes / sizeof *scenes));
+    tcase_add_loop_test(tcase, test_panes, 0, (int)(sizeof panes / sizeof *panes));
     tcase_add_test(tcase, test_soups);
     tcase_add_test(tcase, test_refused);
     suite_add_tcase(suite, tcase);
