@@ -97,6 +97,11 @@ bool method_has_bound(const RenderDesc *desc)
     }
 }
 
+bool method_is_judged(const RenderDesc *desc)
+{
+    return method_info(desc->method)->exact && !render_desc_edges(desc);
+}
+
 const MethodInfo *method_info(MethodId id)
 {
     return &methods[id];

@@ -20,6 +20,9 @@ typedef struct MethodInfo {
  * shade each layer from a G-buffer, or at once, and blend from front to back. */
 bool method_has_bound(const RenderDesc *desc);
 
+/* Whether its image should be the truth's: an exact method, and no outlines, which truth has not. */
+bool method_is_judged(const RenderDesc *desc);
+
 const MethodInfo *method_info(MethodId id);      /* static */
 const MethodInfo *method_find(const char *name); /* NULL when there is none */
 

@@ -42,9 +42,9 @@ static void put_verdict(FileWriter *page, const Threeway *report)
                                                        summary_nodes,      summary_speed};
     char line[SUMMARY_LINE];
     html_open_verdict(page, report->agree,
-                      !report->agree                            ? "The renderers differ"
-                      : method_info(report->desc.method)->exact ? "The three renderers agree"
-                                                                : "ref and gl agree");
+                      !report->agree                    ? "The renderers differ"
+                      : method_is_judged(&report->desc) ? "The three renderers agree"
+                                                        : "ref and gl agree");
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         lines[i](report, line);
         html_item(page, line);
@@ -180,9 +180,9 @@ static void put_guide(FileWriter *page, const Threeway *report)
         "<dt>ULP</dt><dd>Steps between neighbouring values of the stored format.</dd>\n"
         "<dt>Verdict</dt><dd>Agree: ref and gl have no differing bit in any buffer%s.</dd>\n</dl>\n"
         "</section>\n",
-        method_info(report->desc.method)->exact
+        method_is_judged(&report->desc)
             ? ", and ref and truth agree at the 99th percentile within the tolerance"
-            : "; the method approximates, so its distance from truth is not judged");
+            : "; the method's image is not the truth's, so its distance from it is not judged");
 }
 
 static Result put_page(FileWriter *page, const void *what)

@@ -74,7 +74,10 @@ static void print_layers(const Plan *plan, FILE *out)
 
 static void print_passes(const Plan *plan, FILE *out)
 {
-    fprintf(out, "\nPasses over the transparent geometry for all layers\n");
+    fprintf(out, "\nPasses over the transparent geometry for all layers%s\n",
+            plan->desc.peel_test == PEEL_TEST_RAW
+                ? ", with depths compared as stored (raw ones repeat and lose layers)"
+                : "");
     for (int i = 0; i < METHOD_COUNT; i++)
         fprintf(out, "  %-17s %6d%s\n", method_info((MethodId)i)->name, plan->passes[i],
                 method_info((MethodId)i)->exact ? "" : "  (approximate)");

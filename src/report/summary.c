@@ -222,14 +222,16 @@ void summary_pair_truth(const Threeway *report, char out[SUMMARY_LINE])
 {
     const PairReport *pair = &report->pairs[1];
     const UnaffectedMetrics *unaffected = &pair->unaffected;
-    if (!method_info(report->desc.method)->exact) {
+    if (!method_is_judged(&report->desc)) {
         char most[SUMMARY_NUMBER], rmse[SUMMARY_NUMBER], nonfinite[SUMMARY_NUMBER];
         int length = snprintf(
             out, SUMMARY_LINE,
-            "ref and truth: %s approximates, so it is not judged; largest difference %s, root "
-            "mean square %s.",
-            method_info(report->desc.method)->name, summary_real(pair->final.max_abs, most),
-            summary_real(pair->final.rmse, rmse));
+            "ref and truth: %s %s, so it is not judged; largest difference %s, root mean square "
+            "%s.",
+            method_info(report->desc.method)->name,
+            method_info(report->desc.method)->exact ? "draws outlines, which truth has not"
+                                                    : "approximates",
+            summary_real(pair->final.max_abs, most), summary_real(pair->final.rmse, rmse));
         if (pair->final.nonfinite)
             snprintf(out + length, (size_t)(SUMMARY_LINE - length),
                      " Not finite, which is a fault: %s pixels.",

@@ -10,6 +10,7 @@
 
 #include <assimp/material.h>
 #include <assimp/scene.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,6 +78,8 @@ static uint32_t add_material(Loader *loader, const struct aiMaterial *from, cons
     material.metallic = material_float(from, "$mat.metallicFactor", 1.0f);
     material.roughness = material_float(from, "$mat.roughnessFactor", 1.0f);
     material.alpha_cutoff = material_float(from, "$mat.gltf.alphaCutoff", 0.5f);
+    if (material.alpha_cutoff > 0.0f) /* what is denormal would be read as 0, and discard nothing */
+        material.alpha_cutoff = fmaxf(material.alpha_cutoff, FLT_MIN);
     material.double_sided = material_flag(from, "$mat.twosided");
     if (strcmp(mode.data, "BLEND") == 0)
         material.alpha_mode = ALPHA_BLEND;

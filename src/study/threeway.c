@@ -201,7 +201,7 @@ static bool judge(const Threeway *report)
             return false;
     if (ref_truth->final.nonfinite > 0)
         return false;
-    return !method_info(report->desc.method)->exact ||
+    return !method_is_judged(&report->desc) ||
            (ref_truth->unaffected.pixels > 0 &&
             ref_truth->unaffected.p99_rel <= report->tolerance && report->structure.same_scene);
 }

@@ -145,6 +145,9 @@ done <rows
 exits 0 'report and JSON' "$peel" compare chain.gltf --size 64x36 --passes 1 --json j.json \
     --report report/of/this
 has 'the pass limit' output 'passes ended first'
+exits 0 'outlines, which truth has not' "$peel" compare chain.gltf --size 48x32 \
+    --method linked-list --post edges
+has 'outlines' output 'linked-list draws outlines, which truth has not, so it is not judged'
 has 'JSON' j.json '"lost_to_pass_limit"'
 has 'JSON' j.json '"residual"'
 expect 'report' test -s report/of/this/index.html

@@ -302,10 +302,12 @@ START_TEST(material_factors)
     load_quad(
         "\"materials\":[{\"name\":\"a\"},{\"name\":\"b\",\"alphaMode\":\"MASK\",\"alphaCutoff\":"
         "0.25,\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.1,0.2,0.3,"
-        "0.4],\"metallicFactor\":0.5,\"roughnessFactor\":0.6}},{\"alphaMode\":\"BLEND\"}],"
+        "0.4],\"metallicFactor\":0.5,\"roughnessFactor\":0.6}},{\"alphaMode\":\"BLEND\"},"
+        "{\"alphaMode\":\"MASK\",\"alphaCutoff\":1e-40}],"
         "\"meshes\":[{\"primitives\":["
         "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":2,\"material\":1},"
-        "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":2,\"material\":2}]}]," ONE_NODE,
+        "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":2,\"material\":2},"
+        "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":2,\"material\":3}]}]," ONE_NODE,
         &scene);
     const Material *mask = &scene.materials[scene.instances[0].material];
     ck_assert_str_eq(mask->name, "b");
@@ -317,6 +319,7 @@ START_TEST(material_factors)
     ck_assert(mask->double_sided);
     ck_assert_int_eq(scene.materials[scene.instances[1].material].alpha_mode, ALPHA_BLEND);
     ck_assert_float_bits(scene.materials[scene.instances[1].material].alpha_cutoff, 0.5f);
+    ck_assert_float_bits(scene.materials[scene.instances[2].material].alpha_cutoff, 0x1p-126f);
     ck_assert_uint_eq(scene.mesh_count, 1); /* the same accessors */
     scene_free(&scene);
 }
