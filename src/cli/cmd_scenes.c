@@ -37,9 +37,14 @@ static error_t check_line(const ScenesOptions *options)
 {
     const char *name = options->render.scene_path;
     if (options->contract)
-        return options->output && !name && !options->export
+        return options->output && !name && !options->export && !options->render.given
                    ? 0
                    : options_error("scenes --contract: expected -o FILE and nothing else");
+    if (options->render.given && !options->export)
+        return options_error("scenes: --%s says how a scene is rendered; expected --export, too",
+                             options->render.given);
+    if (options->render.all_methods)
+        return options_error("scenes --export: --method all: expected a single method");
     if (options->output && options->export)
         return options_error("scenes --export: expected no -o beside it");
     if (name && !options->output && !options->export)

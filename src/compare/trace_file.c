@@ -4,6 +4,7 @@
 #include "frame/method.h"
 #include "image/dump.h"
 #include "image/exr.h"
+#include "image/exr_planes.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -54,19 +55,17 @@ static Result is_dump(const char *path, bool *is)
 Result trace_file_is(const char *path, bool *is)
 {
     bool exr;
-    int parts;
+    ExrFile *file = NULL;
     Result result = is_dump(path, is);
     if (result != RESULT_OK || *is)
         return result;
     result = exr_is(path, &exr);
     if (result != RESULT_OK || !exr)
         return result;
-    result = exr_part_count(path, &parts);
-    for (int i = 0; i < parts && result == RESULT_OK && !*is; i++) {
-        char name[64];
-        result = exr_part_name(path, i, name);
-        *is = result == RESULT_OK && is_buffer_name(name);
-    }
+    result = exr_file_open(path, &file);
+    for (int i = 0; result == RESULT_OK && i < exr_file_count(file) && !*is; i++)
+        *is = is_buffer_name(exr_file_name(file, i));
+    exr_file_close(file);
     return result;
 }
 
@@ -87,18 +86,17 @@ static Result put(void *context, const char *name, const Image *image)
 
 static Result read_exr(const char *path, Reader *reader)
 {
-    int parts;
-    Result result = exr_part_count(path, &parts);
-    for (int i = 0; i < parts && result == RESULT_OK; i++) {
-        char name[64];
+    ExrFile *file;
+    Result result = exr_file_open(path, &file);
+    for (int i = 0; result == RESULT_OK && i < exr_file_count(file); i++) {
+        const char *name = exr_file_name(file, i);
         Image image;
-        result = exr_read(path, i, &image, name);
-        if (result != RESULT_OK)
-            break;
-        if (is_buffer_name(name) && strlen(name) < DUMP_NAME)
+        result = exr_file_image(file, i, &image);
+        if (result == RESULT_OK && is_buffer_name(name) && strlen(name) < DUMP_NAME)
             result = put(reader, name, &image);
         image_free(&image);
     }
+    exr_file_close(file);
     return result;
 }
 

@@ -51,6 +51,9 @@ typedef struct ExrReader {
 /* Parses the header. On success the caller ends with exr_reader_close. */
 Result exr_reader_open(const char *path, ExrReader *out);
 void exr_reader_close(ExrReader *reader);
+/* A part as exr_read_sized gives it, which has checked that it is there; after a failure the caller
+ * frees *out, too. */
+Result exr_reader_image(const ExrReader *reader, int part, const int *size, Image *out);
 /* code as a Result, with a message naming the file. */
 Result exr_reader_fail(const ExrReader *reader, exr_result_t code);
 

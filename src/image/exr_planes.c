@@ -72,6 +72,16 @@ bool exr_file_is_trace(const ExrFile *file)
 
 /* ---- reading ---- */
 
+Result exr_file_image(const ExrFile *file, int part, Image *out)
+{
+    *out = (Image){0};
+    exr_message_clear();
+    Result result = exr_reader_image(&file->reader, part, NULL, out);
+    if (result != RESULT_OK)
+        image_free(out);
+    return result;
+}
+
 /* Where a chunk's values go: from (x, y) of the planes on. */
 static void point_at(exr_decode_pipeline_t *pipeline, const Planes *planes, int x, int y)
 {

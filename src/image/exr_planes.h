@@ -16,6 +16,9 @@ bool exr_file_is_deep(const ExrFile *file, int part);
 /* Whether every part has a name and says which PixelFormat it holds, as in a trace. */
 bool exr_file_is_trace(const ExrFile *file);
 
+/* A part's pixels as exr_read gives them. The caller frees *out; after a failure it is empty. */
+Result exr_file_image(const ExrFile *file, int part, Image *out);
+
 /* Integer channels are KIND_UNORM where the part says so (EXR_FORMAT_ATTRIBUTE), else KIND_UINT. Of
  * a tiled part its full size. UNSUPPORTED for subsampled channels and deep parts, BAD_INPUT for
  * broken files, NO_MEMORY beyond max_bytes. The caller frees *out; after a failure it is empty. */

@@ -162,7 +162,7 @@ static void fill_alpha(const exr_attr_chlist_t *list, Image *image)
             ((uint16_t *)image->pixels)[4 * i + 3] = 0x3c00;
 }
 
-static Result read_part(const ExrReader *reader, int part, const int *size, Image *out)
+Result exr_reader_image(const ExrReader *reader, int part, const int *size, Image *out)
 {
     PixelFormat format = FORMAT_RGBA32F;
     Result result = part_format(reader, part, &format);
@@ -236,17 +236,6 @@ static void copy_name(const ExrReader *reader, int part, char name[64])
         snprintf(name, 64, "%s", text);
 }
 
-Result exr_part_name(const char *path, int part, char name[64])
-{
-    ExrReader reader;
-    Result result = exr_reader_open(path, &reader);
-    if (result != RESULT_OK)
-        return result;
-    copy_name(&reader, part, name);
-    exr_reader_close(&reader);
-    return RESULT_OK;
-}
-
 Result exr_has_channel(const char *path, int part, const char *channel, bool *has)
 {
     ExrReader reader;
@@ -278,7 +267,7 @@ Result exr_read_sized(const char *path, int part, const int size[2], Image *out,
         result =
             result_fail(RESULT_BAD_INPUT, "%s: no part %d, the file has %d", path, part, count);
     else
-        result = read_part(&reader, part, size, out);
+        result = exr_reader_image(&reader, part, size, out);
     if (result != RESULT_OK)
         image_free(out);
     else
