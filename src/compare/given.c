@@ -250,7 +250,7 @@ static void detect_colors(const GivenImage *given, const Image *reference,
     out->meaning.rows = trials[best].rows;
     out->sure = true;
     for (int i = 0; i < count; i++)
-        out->sure = out->sure && (i == best || trials[best].loss <= MUCH_BETTER * trials[i].loss);
+        out->sure = out->sure && (i == best || trials[best].loss < MUCH_BETTER * trials[i].loss);
 }
 
 /* Constant alpha that is neither means nothing: it was never written, or set to 1. */

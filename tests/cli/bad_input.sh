@@ -179,6 +179,9 @@ refuse 'a value that is not taken' "'--deep=3' is no option" render tutorial --d
 refuse 'more than one option begins so' "'--s' is no option" render tutorial --s 8x8 -o a.exr
 refuse 'an option of a command without any' "'--nosuch' is no option" methods --nosuch
 refuse 'scene list: unknown' 'nosuch' scenes nosuch -o x.gltf
+refuse 'scene list: rendering' '--lights says how a scene is rendered; expected --export' \
+    scenes tutorial --lights 3 -o x.gltf
+refuse 'scene list: methods' 'expected a single method' scenes tutorial --method all --export x
 refuse 'scene without output' '-o FILE' scenes tutorial
 refuse 'json in a missing directory' 'nosuch/x.json' compare tutorial --size 8x8 --json nosuch/x.json
 refuse 'tolerance' '--tolerance' compare tutorial --tolerance -1

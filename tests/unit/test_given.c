@@ -164,6 +164,10 @@ START_TEST(test_doubtful)
     given_describe(&given, &reading, text, sizeof text);
     ck_assert_str_eq(text, "32-bit float EXR, linear, rows from the top, alpha means nothing");
     given_reading_free(&reading);
+    memset(reference.pixels, 0, sizeof(float[4]) * WIDTH * HEIGHT);
+    ck_assert_int_eq(given_interpret(&given, &reference, &(GivenMeaning){0}, &reading), RESULT_OK);
+    ck_assert(!reading.sure); /* all meanings fit */
+    given_reading_free(&reading);
     given_free(&given);
     image_free(&brighter);
     image_free(&reference);
