@@ -84,6 +84,19 @@ static void close_file(struct aiFileIO *io, struct aiFile *file)
     free(file);
 }
 
+/* As many as the reduced document may say that there are more. The caller frees *bytes, after a
+ * failure too. */
+static Result add_zeros(unsigned char **bytes, size_t *count)
+{
+    unsigned char *longer = realloc(*bytes, *count + GLTF_STRIDE_END);
+    if (!longer)
+        return RESULT_NO_MEMORY;
+    memset(longer + *count, 0, GLTF_STRIDE_END);
+    *bytes = longer;
+    *count += GLTF_STRIDE_END;
+    return RESULT_OK;
+}
+
 /* The buffer that path, joined to the document's folder, is the number of. */
 static Result read_buffer(const Document *document, const char *path, MemoryFile *out)
 {
@@ -94,6 +107,8 @@ static Result read_buffer(const Document *document, const char *path, MemoryFile
     if (!uri)
         return RESULT_BAD_INPUT;
     Result result = gltf_file_uri(document->path, "buffer", index, uri, &out->owned, &out->count);
+    if (result == RESULT_OK)
+        result = add_zeros(&out->owned, &out->count);
     out->bytes = out->owned;
     return result;
 }
@@ -114,6 +129,8 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     if (result != RESULT_OK) {
         document->out_of_memory |= result == RESULT_NO_MEMORY;
         free(file);
+        if (memory)
+            free(memory->owned);
         free(memory);
         return NULL;
     }
@@ -130,11 +147,31 @@ static bool is_binary(const char *path, const GltfJson *json)
     return gltf_file_kind(path) == 1 && !json_object_get(first, "uri");
 }
 
+/* text and the BIN chunk, which is `wanted` bytes long at least. */
+static Result assemble(const GltfJson *json, const char *text, size_t wanted, Document *document)
+{
+    size_t count = json->binary_count;
+    unsigned char *longer = NULL;
+    if (wanted > count) {
+        longer = memory_array(wanted, 1);
+        if (!longer)
+            return RESULT_NO_MEMORY;
+        memcpy(longer, json->binary, count);
+        count = wanted;
+    }
+    Result result = gltf_file_assemble(text, longer ? longer : json->binary, count,
+                                       &document->bytes, &document->count);
+    free(longer);
+    return result;
+}
+
 /* The reduced document as text, or binary with the same BIN chunk. */
 static Result serialize(const char *path, const GltfJson *json, Document *document)
 {
     json_memory_begin();
     json_t *reduced = gltf_json_reduced(json);
+    const json_t *first = json_array_get(json_object_get(reduced, "buffers"), 0);
+    size_t wanted = gltf_json_index(first, "byteLength", 0);
     char *text = json_dumps(reduced, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(reduced);
     Result whole = json_memory_check(path, RESULT_OK);
@@ -147,8 +184,7 @@ static Result serialize(const char *path, const GltfJson *json, Document *docume
         document->count = strlen(text);
         return RESULT_OK;
     }
-    Result result = gltf_file_assemble(text, json->binary, json->binary_count, &document->bytes,
-                                       &document->count);
+    Result result = assemble(json, text, wanted, document);
     free(text);
     return result;
 }

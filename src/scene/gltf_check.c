@@ -125,7 +125,7 @@ static Result check_views(const GltfCheck *check)
             !gltf_valid_index(json_object_get(element, "byteOffset"),
                               room - gltf_json_index(element, "byteLength", 0) + 1))
             return gltf_fail(check, "bufferView", i, "a range within its buffer");
-        if (!gltf_valid_index(json_object_get(element, "byteStride"), 253))
+        if (!gltf_valid_index(json_object_get(element, "byteStride"), GLTF_STRIDE_END))
             return gltf_fail(check, "bufferView", i, "a byteStride of at most 252");
     }
     return RESULT_OK;

@@ -140,6 +140,37 @@ static void reduce_array(json_t *to, const json_t *from, const char *key,
     json_object_set_new(to, key, out);
 }
 
+static void lengthen(json_t *object, size_t length)
+{
+    if (length > gltf_json_index(object, "byteLength", 0))
+        json_object_set_new(object, "byteLength", json_integer((json_int_t)length));
+}
+
+/* Assimp wants a whole stride behind the last element, too, which glTF does not: a view that lacks
+ * less than that gets it, and its buffer. */
+static void complete_strides(const json_t *out)
+{
+    const json_t *views = json_object_get(out, "bufferViews");
+    const json_t *accessor;
+    size_t i;
+    json_array_foreach(json_object_get(out, "accessors"), i, accessor)
+    {
+        json_t *view = json_array_get(views, gltf_json_index(accessor, "bufferView", SIZE_MAX));
+        json_t *buffer = json_array_get(json_object_get(out, "buffers"),
+                                        gltf_json_index(view, "buffer", SIZE_MAX));
+        size_t stride = gltf_json_index(view, "byteStride", 0);
+        size_t count = gltf_json_index(accessor, "count", 0);
+        size_t room = gltf_json_index(view, "byteLength", 0);
+        if (!buffer || count > UINT32_MAX)
+            continue;
+        size_t end = gltf_json_index(accessor, "byteOffset", 0) + stride * count;
+        if (end <= room || end - room >= stride)
+            continue;
+        lengthen(view, end);
+        lengthen(buffer, gltf_json_index(view, "byteOffset", 0) + end);
+    }
+}
+
 json_t *gltf_json_reduced(const GltfJson *json)
 {
     json_t *out = json_object(), *asset = json_object();
@@ -151,6 +182,7 @@ json_t *gltf_json_reduced(const GltfJson *json)
     number_buffers(json_object_get(out, "buffers"));
     reduce_array(out, json->root, "bufferViews", reduced_view);
     reduce_array(out, json->root, "accessors", reduced_accessor);
+    complete_strides(out);
     reduce_array(out, json->root, "meshes", reduced_mesh);
     reduce_array(out, json->root, "materials", reduced_material);
     reduce_array(out, json->root, "nodes", reduced_node);

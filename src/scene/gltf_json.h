@@ -32,6 +32,10 @@ enum {
     TYPE_FLOAT
 };
 
+enum {
+    GLTF_STRIDE_END = 253 /* a byteStride is less */
+};
+
 /* GL's names for what a sampler may say. */
 enum {
     FILTER_NEAREST = 9728,
@@ -73,7 +77,8 @@ typedef struct GltfJson {
 void gltf_json_free(GltfJson *json); /* what gltf_read made */
 
 /* A new document with nothing but triangles, materials' factors and nodes. The indices of nodes,
- * meshes and materials are kept; the uri of a buffer is its index. Without memory it may lack
+ * meshes and materials are kept; the uri of a buffer is its index, and its byteLength may be up to
+ * GLTF_STRIDE_END more than it has. Without memory it may lack
  * parts: see base/json_memory.h. */
 json_t *gltf_json_reduced(const GltfJson *json);
 

@@ -172,6 +172,47 @@ START_TEST(binary_with_buffers_elsewhere)
 }
 END_TEST
 
+/* Nothing lies behind the last vertex, though a stride has room there: embedded, or the chunk. */
+START_TEST(last_stride_may_be_short)
+{
+    float floats[22] = {0, 0, 0, 0, 0, 1, 7, 7, 1, 0, 0, 0, 0, 1, 7, 7, 0, 1, 0, 0, 0, 1};
+    char *uri = gltf_file_data_uri("application/octet-stream", (unsigned char *)floats, 88);
+    ck_assert_ptr_nonnull(uri);
+    for (int binary = 0; binary < 2; binary++) {
+        char text[1024];
+        unsigned char *bytes;
+        size_t count;
+        Scene scene;
+        const char *path = scratch_path(binary ? "short.glb" : "short.gltf");
+        snprintf(text, sizeof text,
+                 "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],"
+                 "\"nodes\":[{\"mesh\":0}],\"buffers\":[{%s%s%s\"byteLength\":88}],"
+                 "\"bufferViews\":[{\"buffer\":0,\"byteLength\":88,\"byteStride\":32}],"
+                 "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+                 "\"type\":\"VEC3\"},{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5126,"
+                 "\"count\":3,\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":["
+                 "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1}}]}]}",
+                 binary ? "" : "\"uri\":\"", binary ? "" : uri, binary ? "" : "\",");
+        if (binary) {
+            ck_assert_int_eq(gltf_file_assemble(text, (unsigned char *)floats, 88, &bytes, &count),
+                             RESULT_OK);
+            ck_assert_int_eq(file_write(path, bytes, count), RESULT_OK);
+            free(bytes);
+        } else {
+            write_text(path, text);
+        }
+        load(path, &scene);
+        ck_assert_uint_eq(scene.meshes[0].vertex_count, 3);
+        for (int i = 0; i < 3; i++) {
+            ck_assert_mem_eq(scene.meshes[0].position + 3 * i, floats + 8 * i, 12);
+            ck_assert_mem_eq(scene.meshes[0].normal + 3 * i, floats + 8 * i + 3, 12);
+        }
+        scene_free(&scene);
+    }
+    free(uri);
+}
+END_TEST
+
 /* The scene's name is the file's, made of UTF-8 alone. */
 START_TEST(name_of_other_bytes)
 {
@@ -551,6 +592,7 @@ int main(void)
     tcase_add_test(test, defaults_where_the_file_says_nothing);
     tcase_add_test(test, material_factors);
     tcase_add_test(test, binary_with_buffers_elsewhere);
+    tcase_add_test(test, last_stride_may_be_short);
     tcase_add_test(test, name_of_other_bytes);
     tcase_add_test(test, strips_and_flat_normals);
     tcase_add_test(test, texture_coordinates_come_back);
