@@ -36,14 +36,18 @@ static Result split_binary(const char *path, GltfJson *json, size_t count, const
     if (count < 20 || *length > count - 20)
         return result_fail(RESULT_BAD_INPUT, "%s: JSON of %zu bytes in a file of %zu", path,
                            *length, count);
-    size_t next = 20 + (*length + 3) / 4 * 4;
-    if (count < next + 8)
-        return RESULT_OK;
-    if (memcmp(file + next + 4, "BIN", 4) != 0 || word(file + next) > count - next - 8)
-        return result_fail(RESULT_BAD_INPUT, "%s: binary chunk is truncated or of unknown type",
-                           path);
-    json->binary = json->file + next + 8;
-    json->binary_count = word(file + next);
+    size_t chunk;
+    for (size_t next = 20 + (*length + 3) / 4 * 4; count >= next + 8; next += 8 + chunk) {
+        chunk = ((size_t)word(file + next) + 3) / 4 * 4;
+        if (word(file + next) > count - next - 8)
+            return result_fail(RESULT_BAD_INPUT, "%s: a chunk of %u bytes is truncated", path,
+                               word(file + next));
+        if (memcmp(file + next + 4, "BIN", 4) == 0) { /* others are an extension's */
+            json->binary = json->file + next + 8;
+            json->binary_count = word(file + next);
+            return RESULT_OK;
+        }
+    }
     return RESULT_OK;
 }
 

@@ -148,19 +148,22 @@ START_TEST(escaped_buffer_names)
 }
 END_TEST
 
-/* A binary file's first buffer may be another than its BIN chunk. */
+/* A binary file's first buffer may be another than its BIN chunk, and the chunk an extension's. */
 START_TEST(binary_with_buffers_elsewhere)
 {
     static const unsigned char unused[8] = {1, 2, 3};
     char text[8192];
     ck_assert_uint_lt(scratch_read(write_quad(quad, QUAD_MESH "," ONE_NODE), text, sizeof text),
                       sizeof text - 1);
-    for (size_t chunk = 0; chunk <= sizeof unused; chunk += sizeof unused) {
+    for (int i = 0; i < 3; i++) {
         Scene scene;
+        size_t chunk = i ? sizeof unused : 0;
         unsigned char *bytes;
         size_t count;
         const char *path = scratch_path("elsewhere.glb");
         ck_assert_int_eq(gltf_file_assemble(text, unused, chunk, &bytes, &count), RESULT_OK);
+        if (i == 2)
+            memcpy(bytes + count - sizeof unused - 4, "MORE", 4);
         ck_assert_int_eq(file_write(path, bytes, count), RESULT_OK);
         load(path, &scene);
         ck_assert_uint_eq(scene.meshes[0].vertex_count, 4);
