@@ -35,12 +35,17 @@ error_t options_error(const char *format, ...)
     return EINVAL;
 }
 
+void options_drop_directory(void)
+{
+    if (made_directory)
+        rmdir(made_directory); /* if nothing is in it */
+}
+
 int options_fail(Result result)
 {
     const char *message = result_message();
     fprintf(stderr, "peel: %s\n", *message ? message : result_text(result));
-    if (made_directory)
-        rmdir(made_directory); /* if nothing is in it */
+    options_drop_directory();
     return EXIT_BAD_INPUT;
 }
 

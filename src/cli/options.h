@@ -123,6 +123,8 @@ Result options_check_outputs(const char *first, const char *second, const char *
 /* Makes a directory, and finds it writable, before minutes of work and not after. path, an argument
  * of the program: if the command fails and has written nothing into it, it goes again. */
 Result options_open_directory(const char *path);
+/* Removes it again where it was made and is empty. */
+void options_drop_directory(void);
 
 /* The command as a shell would take it again: argv[0] is "peel <command>", or empty to have the
  * arguments alone, each behind a space; NULL when memory is exhausted. The caller frees. */

@@ -65,5 +65,6 @@ int options_given_size(const char *path, const GivenImage *given, int width, int
     fprintf(stderr,
             "peel: %s: the image has %dx%d pixels, expected %dx%d; --size says what is rendered\n",
             path, stored->width, stored->height, width, height);
+    options_drop_directory();
     return EXIT_SIZES;
 }

@@ -100,8 +100,10 @@ name=$(printf 'right\377.png')
 cp right.png "$name"
 exits 0 'a name that is not UTF-8' "$peel" diagnose tutorial "$name" $settings --json name.json
 check 'a name that is not UTF-8' node -e "JSON.parse(require('fs').readFileSync('name.json'))"
-refused 3 'another size' tutorial right.png --size 64x47 --json none.json
+refused 3 'another size' tutorial right.png --size 64x47 --json none.json \
+    --report page_of_sizes
 check 'both sizes' grep -q '64x48.*64x47' output
+check 'other sizes: no empty folder' test ! -e page_of_sizes
 check 'nothing written' test ! -e none.json
 refused 4 'cut short' tutorial short.png $settings
 refused 4 'cut short' tutorial short.exr $settings
