@@ -12,7 +12,7 @@ static const char *label;
 static char context[64];
 static uint64_t steps;
 static double last_drawn;
-static atomic_bool active;
+static atomic_bool active, off;
 static atomic_ullong count;
 
 static double seconds(void)
@@ -41,7 +41,7 @@ void progress_context(const char *text)
 
 void progress_begin(const char *what, uint64_t total)
 {
-    if (!isatty(STDERR_FILENO))
+    if (atomic_load(&off) || !isatty(STDERR_FILENO))
         return;
     pthread_mutex_lock(&mutex);
     label = what;
@@ -53,7 +53,7 @@ void progress_begin(const char *what, uint64_t total)
     pthread_mutex_unlock(&mutex);
 }
 
-void progress_step(uint64_t done)
+static void redraw(uint64_t done)
 {
     pthread_mutex_lock(&mutex);
     if (label && seconds() - last_drawn > 0.1) {
@@ -63,10 +63,32 @@ void progress_step(uint64_t done)
     pthread_mutex_unlock(&mutex);
 }
 
+void progress_clear(void)
+{
+    pthread_mutex_lock(&mutex);
+    if (label) {
+        fprintf(stderr, "\r\033[K");
+        fflush(stderr);
+        last_drawn = 0.0;
+    }
+    pthread_mutex_unlock(&mutex);
+}
+
+void progress_off(void)
+{
+    atomic_store(&off, true);
+}
+
 void progress_add(void)
 {
     if (atomic_load(&active))
-        progress_step(atomic_fetch_add(&count, 1) + 1);
+        redraw(atomic_fetch_add(&count, 1) + 1);
+}
+
+void progress_step(uint64_t done)
+{
+    atomic_store(&count, done); /* for the tasks that a step may have */
+    redraw(done);
 }
 
 void progress_end(void)

@@ -70,6 +70,7 @@ static Result run_one(GlRun *run, PixelFormat format, const BlendEquation *equat
     run->values += blend_values(report);
     int code = blend_check_code(run->command, report);
     run->code = code > run->code ? code : run->code;
+    progress_clear();
     report_blend_row(report, stdout);
     fflush(stdout);
     return RESULT_OK;
@@ -92,6 +93,7 @@ static Result run_all(GlRun *run)
     Result result = RESULT_OK;
     progress_before = 0;
     progress_begin("vectors", count_vectors(run->command));
+    progress_clear();
     report_blend_row_head(stdout);
     for (int i = 0; i < ARITHMETIC_FORMATS; i++)
         for (int k = 0; k < equation_count(run->command, i) && result == RESULT_OK; k++)

@@ -1,4 +1,5 @@
 /* peel blend vectors: test vectors of blending, with results. */
+#include "base/progress.h"
 #include "blend/sequence.h"
 #include "blend/vector_results.h"
 #include "cli/bind.h"
@@ -369,6 +370,8 @@ int cmd_blend_vectors(int argc, char **argv)
         return EXIT_AGREE;
     }
     Result result = choose(&command);
+    if (!command.checksum && strcmp(command.output, "-") == 0 && isatty(STDOUT_FILENO))
+        progress_off();
     if (result == RESULT_OK && command.checksum)
         result = print_checksums(&command);
     else if (result == RESULT_OK)
