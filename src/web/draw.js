@@ -158,7 +158,9 @@ draw.position = (buffer) => {
         }
     const text = ["x", "y", "z"].map((name, k) =>
         `${name} from ${low[k].toPrecision(3)} to ${high[k].toPrecision(3)}`).join(", ");
-    return draw.picture(buffer, `Place in the eye's space: ${text}, as red, green and blue.`,
+    const caption = low[0] > high[0] ? "Nothing is stored."
+        : `Place in the eye's space: ${text}, as red, green and blue.`;
+    return draw.picture(buffer, caption,
         (at, i) => draw.isEmpty(buffer, i) ? null : [0, 1, 2].map((k) =>
             255 * (draw.value(buffer, at + k) - low[k]) / Math.max(high[k] - low[k], 1e-9)),
         draw.describe(buffer, "xyz"));

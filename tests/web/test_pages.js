@@ -78,6 +78,7 @@ async function walk(page, expected, pixel, key) {
             return total;
         }
         total += await compare(page, expected, pixel, `${expected.scene}, step ${id}`);
+        assert.doesNotMatch(await page.innerText("body"), /Infinity|undefined/, id);
         before = step;
         count++;
         await page.keyboard.press(key);
