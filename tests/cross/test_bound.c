@@ -4,11 +4,11 @@
  *
  * PEEL_TEST_SEED=N runs the one soup that a failure names; PEEL_TEST_COUNT=N that many, from there
  * or from 1. */
+#include "pane.h"
 #include "soup_kinds.h"
 #include "testing.h"
 #include "truths.h"
 
-#include "base/memory.h"
 #include "frame/method.h"
 #include "ref/truth/truth.h"
 #include "scene/builder.h"
@@ -145,19 +145,8 @@ static const struct {
 
 START_TEST(test_panes)
 {
-    const float size = panes[_i].size, *normal = panes[_i].normal;
-    static const float corners[4][2] = {{-0.9f, -0.9f}, {0.9f, -0.9f}, {0.9f, 0.9f}, {-0.9f, 0.9f}};
-    static const uint32_t index[] = {0, 1, 2, 0, 2, 3};
-    Mesh mesh = {.vertex_count = 4, .triangle_count = 2};
-    mesh.position = memory_array(12, sizeof(float));
-    mesh.normal = memory_array(12, sizeof(float));
-    mesh.index = memory_array(6, sizeof(uint32_t));
-    memcpy(mesh.index, index, sizeof index);
-    for (int i = 0; i < 4; i++) {
-        const float corner[3] = {corners[i][0] * size, corners[i][1] * size, -2.0f * size};
-        memcpy(mesh.position + 3 * i, corner, sizeof corner);
-        memcpy(mesh.normal + 3 * i, normal, 3 * sizeof *normal);
-    }
+    const float size = panes[_i].size;
+    Mesh mesh = pane_mesh(0.9f * size, -2.0f * size, panes[_i].normal);
     Builder builder = builder_begin(panes[_i].name);
     builder_mesh(&builder, RESULT_OK, &mesh);
     builder_material(&builder,

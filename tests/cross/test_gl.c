@@ -1,5 +1,6 @@
 /* The OpenGL renderer by itself: errors become results, and small frames come out as computed by
  * hand. */
+#include "pane.h"
 #include "testing.h"
 
 #include "base/memory.h"
@@ -27,27 +28,6 @@ static char *copy_text(const char *text)
     return copy;
 }
 
-static void *copy_values(const void *values, size_t bytes)
-{
-    void *copy = memory_array(bytes, 1);
-    memcpy(copy, values, bytes);
-    return copy;
-}
-
-static Mesh quad_mesh(void)
-{
-    static const float position[] = {-9, -9, 0, 9, -9, 0, 9, 9, 0, -9, 9, 0};
-    static const float normal[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
-    static const uint32_t index[] = {0, 1, 2, 0, 2, 3};
-    return (Mesh){
-        .vertex_count = 4,
-        .triangle_count = 2,
-        .position = copy_values(position, sizeof position),
-        .normal = copy_values(normal, sizeof normal),
-        .index = copy_values(index, sizeof index),
-    };
-}
-
 /* No lights, ambient 1: a surface's colour is its base colour. The caller frees the scene. */
 static Scene quad_scene(const Quad *quads, size_t count)
 {
@@ -62,7 +42,7 @@ static Scene quad_scene(const Quad *quads, size_t count)
     scene.instances = memory_array(count, sizeof *scene.instances);
     scene.lights = memory_array(0, sizeof *scene.lights);
     if (count > 0)
-        scene.meshes[0] = quad_mesh();
+        scene.meshes[0] = pane_mesh(9.0f, 0.0f, (float[]){0, 0, 1});
     for (size_t i = 0; i < count; i++) {
         scene.materials[i] = (Material){.name = copy_text("surface"),
                                         .roughness = 1.0f,

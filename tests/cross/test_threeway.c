@@ -1,6 +1,7 @@
 /* The three renderers on the built-in scenes: ref and gl agree bit for bit in every buffer, truth
  * agrees within the tolerance, and a renderer that is broken on purpose is found out. */
 #include "base/memory.h"
+#include "pane.h"
 #include "testing.h"
 
 #include "gl/gl_renderer.h"
@@ -231,17 +232,7 @@ END_TEST
  * where the depth test hides 4x4 pixels that would be stored as halves, Mesa's threads stop to. */
 START_TEST(test_hidden_behind_halves)
 {
-    static const float position[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-    static const float normal[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
-    static const uint32_t index[] = {0, 1, 2, 0, 2, 3};
-    Mesh mesh = {.vertex_count = 4, .triangle_count = 2};
-    mesh.position = memory_array(12, sizeof(float));
-    mesh.normal = memory_array(12, sizeof(float));
-    mesh.index = memory_array(6, sizeof(uint32_t));
-    memcpy(mesh.position, position, sizeof position);
-    memcpy(mesh.normal, normal, sizeof normal);
-    memcpy(mesh.index, index, sizeof index);
-
+    Mesh mesh = pane_mesh(1.0f, 0.0f, (float[]){0, 0, 1});
     Builder builder = builder_begin("hidden");
     builder_mesh(&builder, RESULT_OK, &mesh);
     builder_material(&builder,
