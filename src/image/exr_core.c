@@ -37,6 +37,9 @@ int exr_channel_index(PixelFormat format, const char *name)
     return -1;
 }
 
+/* An allocation of OpenEXRCore's failed: it says something else of that, or goes on without. */
+static _Thread_local bool starved;
+
 void exr_message_keep(exr_const_context_t context, exr_result_t code, const char *text)
 {
     (void)context;
@@ -48,10 +51,13 @@ void exr_message_keep(exr_const_context_t context, exr_result_t code, const char
 void exr_message_clear(void)
 {
     message[0] = 0;
+    starved = false;
 }
 
 const char *exr_message(exr_result_t code)
 {
+    if (starved || code == EXR_ERR_OUT_OF_MEMORY)
+        return "out of memory";
     return message[0] ? message : exr_get_default_error_message(code);
 }
 
@@ -69,8 +75,14 @@ bool exr_find_channel(const exr_attr_chlist_t *list, const char *name, exr_pixel
 
 Result exr_reader_fail(const ExrReader *reader, exr_result_t code)
 {
-    return result_fail(code == EXR_ERR_OUT_OF_MEMORY ? RESULT_NO_MEMORY : RESULT_BAD_INPUT,
+    bool memory = starved || code == EXR_ERR_OUT_OF_MEMORY;
+    return result_fail(memory ? RESULT_NO_MEMORY : RESULT_BAD_INPUT,
                        "%s: not a readable OpenEXR file: %s", reader->path, exr_message(code));
+}
+
+Result exr_reader_check(const ExrReader *reader, Result result)
+{
+    return result == RESULT_OK && starved ? exr_reader_fail(reader, EXR_ERR_OUT_OF_MEMORY) : result;
 }
 
 static int64_t read_at(exr_const_context_t context, void *user, void *buffer, uint64_t size,
@@ -112,7 +124,9 @@ void exr_reader_close(ExrReader *reader)
 /* What a broken chunk of run lengths leaves out is 0, and not what memory had there. */
 static void *allocate_zeroed(size_t bytes)
 {
-    return calloc(bytes, 1);
+    void *memory = calloc(bytes, 1);
+    starved |= !memory;
+    return memory;
 }
 
 Result exr_reader_open(const char *path, ExrReader *out)
@@ -141,7 +155,7 @@ Result exr_reader_open(const char *path, ExrReader *out)
     setup.max_image_width = setup.max_image_height = EXR_SIZE_MAX;
     exr_message_clear();
     exr_result_t code = exr_start_read(&out->context, path, &setup);
-    if (code == EXR_ERR_SUCCESS)
+    if (code == EXR_ERR_SUCCESS && !starved)
         return RESULT_OK;
     result = exr_reader_fail(out, code);
     exr_reader_close(out);

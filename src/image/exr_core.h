@@ -56,6 +56,9 @@ void exr_reader_close(ExrReader *reader);
 Result exr_reader_image(const ExrReader *reader, int part, const int *size, Image *out);
 /* code as a Result, with a message naming the file. */
 Result exr_reader_fail(const ExrReader *reader, exr_result_t code);
+/* result, or NO_MEMORY where that was well although OpenEXRCore found no memory since
+ * exr_message_clear: it may have left something out. */
+Result exr_reader_check(const ExrReader *reader, Result result);
 
 /* A file being written; at its address until it is closed. */
 typedef struct ExrOutput {
@@ -90,7 +93,7 @@ bool exr_declared_format(const ExrReader *reader, int part, const exr_attr_chlis
  * letting it go to stderr. */
 void exr_message_keep(exr_const_context_t context, exr_result_t code, const char *text);
 void exr_message_clear(void);
-/* That message, or the library's text for code. */
+/* That message, or the library's text for code, or that there was no memory. */
 const char *exr_message(exr_result_t code);
 
 #endif

@@ -371,6 +371,7 @@ Result exr_deep_read(const char *path, size_t max_bytes, DeepImage *out)
         result = read_chunk(&reader, y, &chunk, &total);
         if (result == RESULT_OK)
             result = read_samples(&reader, y, &chunk, total);
+        result = exr_reader_check(&reader.file, result);
     }
     free_reader(&reader);
     if (result != RESULT_OK)

@@ -250,6 +250,7 @@ Result exr_file_planes(ExrFile *file, int part, size_t max_bytes, Planes *out)
         exr_decoding_destroy(file->reader.context, &pipeline);
         if (code != EXR_ERR_SUCCESS)
             result = exr_reader_fail(&file->reader, code);
+        result = exr_reader_check(&file->reader, result);
     }
     for (int i = 0; i < out->count && result == RESULT_OK; i++)
         result =

@@ -201,7 +201,7 @@ Result exr_reader_image(const ExrReader *reader, int part, const int *size, Imag
     exr_decoding_destroy(reader->context, &pipeline);
     free(scratch);
     fill_alpha(list, out);
-    return result;
+    return exr_reader_check(reader, result);
 }
 
 Result exr_is(const char *path, bool *is)

@@ -8,6 +8,7 @@
 #include "report/pictures.h"
 #include "report/summary.h"
 #include "scene/gltf.h"
+#include "scene/gltf_child.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -307,7 +308,7 @@ static Result reload(const ContractDesc *contract, const char *dir, Scene *out)
     char *path = pictures_path(dir, "scene.gltf");
     Result result = path ? gltf_write(contract->scene, path) : RESULT_NO_MEMORY;
     if (result == RESULT_OK)
-        result = gltf_load(path, out);
+        result = gltf_child_load(path, contract->desc.max_memory, out);
     free(path);
     return result;
 }

@@ -32,6 +32,8 @@ void document_append(Document *json, json_t *array, json_t *value)
 
 json_t *document_string(const char *text)
 {
+    if (!text)
+        return NULL;
     json_memory_begin();
     json_t *value = json_string(text);
     if (value || json_memory_check("", RESULT_OK) != RESULT_OK)

@@ -16,8 +16,8 @@ typedef struct Document {
 void document_put(Document *json, json_t *object, const char *key, json_t *value);
 void document_append(Document *json, json_t *array, json_t *value);
 
-/* Values; NULL when memory is exhausted. What is not a finite number is null. JSON is UTF-8; a path
- * need not be: where it is not, its bytes beyond ASCII become '?'. */
+/* Values; NULL when memory is exhausted, or had been for text. What is not a finite number is null.
+ * JSON is UTF-8; a path need not be: where it is not, its bytes beyond ASCII become '?'. */
 json_t *document_real(double value);
 json_t *document_count(uint64_t value);
 json_t *document_string(const char *text);

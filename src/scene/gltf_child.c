@@ -73,10 +73,13 @@ static void take(void *context, const void *record, size_t size)
     load->read = blob_read(record, size, load->scene);
 }
 
-/* Messages about the child do not name the file. */
-static Result name_file(const char *path, Result result)
+/* Messages about the child do not name the file. Libraries may crash where they find no memory. */
+static Result name_file(const char *path, Result result, size_t memory)
 {
-    if (strncmp(result_message(), path, strlen(path)) != 0)
+    if (result == RESULT_INTERNAL)
+        result_fail(result, "%s: cannot load: %s; of memory it may take %zu MiB (--max-memory)",
+                    path, result_message(), memory >> 20);
+    else if (strncmp(result_message(), path, strlen(path)) != 0)
         result_fail(result, "%s: cannot load: %s", path, result_message());
     return result == RESULT_INTERNAL ? RESULT_BAD_INPUT : result;
 }
@@ -101,5 +104,5 @@ Result gltf_child_load(const char *path, size_t max_memory, Scene *out)
     if (!result)
         return RESULT_OK;
     scene_free(out);
-    return name_file(path, result);
+    return name_file(path, result, load.memory);
 }
