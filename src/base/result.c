@@ -1,5 +1,7 @@
 #include "base/result.h"
 
+#include "base/text.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,19 +32,6 @@ const char *result_text(Result result)
     return "unknown result";
 }
 
-/* The contract is one line whatever a file name or a library's text contains, and nothing that a
- * terminal takes for a command. */
-static void make_one_line(char *text)
-{
-    for (char *c = text; *c; c++)
-        if (*c == '\n' || *c == '\r' || *c == '\t')
-            *c = ' ';
-        else if ((unsigned char)*c < ' ' || *c == 0x7f)
-            *c = '?';
-        else if (c[0] == '\xc2' && (unsigned char)c[1] >= 0x80 && (unsigned char)c[1] < 0xa0)
-            c[0] = c[1] = '?'; /* U+0080 to U+009F */
-}
-
 /* Of a line that is too long the middle is left out: its end says why. Whole characters of UTF-8.
  */
 static void shorten(const char *whole, char out[sizeof message])
@@ -69,7 +58,7 @@ Result result_fail(Result code, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    make_one_line(text);
+    text_make_line(text);
     shorten(text, message);
     return code;
 }
@@ -99,7 +88,7 @@ void result_warn(const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    make_one_line(text);
+    text_make_line(text);
     if (warning_sink)
         warning_sink(warning_context, text);
     else

@@ -24,6 +24,17 @@ void text_print(Text *text, const char *format, ...)
     text->count += (size_t)length;
 }
 
+void text_make_line(char *string)
+{
+    for (char *c = string; *c; c++)
+        if (*c == '\n' || *c == '\r' || *c == '\t')
+            *c = ' ';
+        else if ((unsigned char)*c < ' ' || *c == 0x7f)
+            *c = '?';
+        else if (c[0] == '\xc2' && (unsigned char)c[1] >= 0x80 && (unsigned char)c[1] < 0xa0)
+            c[0] = c[1] = '?'; /* U+0080 to U+009F */
+}
+
 /* How many bytes the UTF-8 sequence at s has; 0 where it is none. Source: RFC 3629, section 4. */
 static int utf8_length(const unsigned char *s)
 {

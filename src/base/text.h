@@ -18,6 +18,10 @@ void text_print(Text *text, const char *format, ...) __attribute__((format(print
 /* Puts '?' for every byte that is not UTF-8. */
 void text_make_utf8(char *string);
 
+/* Leaves one line, and nothing that a terminal takes for a command: blanks for what breaks lines,
+ * '?' for other control characters. */
+void text_make_line(char *string);
+
 /* A JSON string with its quotes. Bytes beyond ASCII that are not UTF-8 become '?'. */
 void text_json_string(Text *text, const char *string);
 

@@ -44,7 +44,7 @@ const char *diff_bin_text(int bin); /* "0", "1", "2-3", …; static */
 
 /* How a channel differs. Errors are |a − b|; a channel that one side lacks is 0 there. */
 typedef struct DiffChannel {
-    char *name;
+    char *name; /* without control characters, as a part's */
     const char *kinds[DIFF_SIDES]; /* "float", "half", "unorm8", …; NULL where it is missing */
     uint64_t values;
     uint64_t differing; /* not the same stored value; NaN equals NaN */

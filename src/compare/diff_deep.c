@@ -114,6 +114,8 @@ static Result list_others(const DeepImage *image, const DeepImage *other, char *
             text_print(&names, "%s%s", names.count ? ", " : "", deep_channels[order[i]].name);
     if (image->left_out)
         text_print(&names, "%s%s", names.count ? ", " : "", image->left_out);
+    if (names.bytes)
+        text_make_line(names.bytes);
     *out = names.bytes;
     return names.result;
 }

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "image/decode.h"
 #include "image/exr.h"
 #include "image/exr_deep.h"
@@ -114,6 +115,7 @@ static Result add_part(DiffReport *report, const char *name, Result result, Diff
         diff_part_free(part);
         return result;
     }
+    text_make_line(part->name);
     report->parts[report->count++] = *part;
     note(report, part);
     return RESULT_OK;

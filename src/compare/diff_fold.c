@@ -1,6 +1,7 @@
 #include "compare/diff_fold.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,6 +21,8 @@ static bool is_averaged(const Fold *fold, int channel)
 static Result begin_channel(const FoldChannel *from, DiffChannel *channel)
 {
     channel->name = strdup(from->name);
+    if (channel->name)
+        text_make_line(channel->name);
     channel->has_ulp = from->has[0] && from->has[1];
     for (int side = 0; side < DIFF_SIDES; side++)
         if (from->has[side])

@@ -241,7 +241,7 @@ static exr_result_t decompress(exr_decode_pipeline_t *pipeline)
 {
     if (pipeline->chunk.packed_size != pipeline->chunk.unpacked_size)
         return default_decompress(pipeline);
-    memcpy(pipeline->unpacked_buffer, pipeline->packed_buffer, pipeline->chunk.packed_size);
+    memmove(pipeline->unpacked_buffer, pipeline->packed_buffer, pipeline->chunk.packed_size);
     return EXR_ERR_SUCCESS;
 }
 

@@ -192,6 +192,10 @@ oiiotool --create 8x6 1 -d uint32 --fill:color=0.75 8x6 -d uint32 -o other_ids.e
 exits 2 'identifiers' "$peel" diff ids.exr other_ids.exr
 has 'identifiers' 'values are [0-9]\{10\} vs [0-9]\{10\}$'
 
+oiiotool ids.exr --chnames "$(printf 'R\033[31m')" -o escape.exr
+exits 0 'a name with a command for the terminal' "$peel" diff -v escape.exr escape.exr
+has 'a name with a command for the terminal' '^  R?\[31m '
+
 # Deep images and traces.
 for alpha in 0.5 0.25; do
     exits 0 'deep' "$peel" render tutorial --size 48x32 --lights 4 --opacity $alpha --with truth \
