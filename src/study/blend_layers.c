@@ -80,11 +80,12 @@ static Result read_numbers(const char *place, const char *text, size_t length, i
 {
     Token tokens[TOKENS];
     int count = split(text, length, tokens);
+    static const char *const expected[] = {"", "1 to ", "2 to ", "3 to ", ""};
     if (count > 4 || count < least)
         return result_fail(RESULT_BAD_INPUT,
-                           "%s: '%.*s': expected %s%s red,green,blue,alpha; found %s", place,
-                           (int)(length < 60 ? length : 60), text, least < 4 ? "at most " : "",
-                           "4 numbers", (const char *[]){"1", "2", "3", "4", "more"}[count - 1]);
+                           "%s: '%.*s': expected %s4 numbers red,green,blue,alpha; found %s", place,
+                           (int)(length < 60 ? length : 60), text, expected[least],
+                           (const char *[]){"1", "2", "3", "4", "more"}[count - 1]);
     for (int i = 0; i < 4; i++) {
         if (i >= count)
             rational_set(i == 3 ? 1.0 : 0.0, &out->channels[i]);
