@@ -368,6 +368,7 @@ static void keep_example(BlendRuleTally *tally, const BlendCase *one, BlendPlace
                          const Seen *seen, uint32_t got)
 {
     tally->has_example = true;
+    tally->example_error = seen->scaled;
     tally->channel = one->channel;
     tally->set = place.set;
     tally->index = place.index;
@@ -406,7 +407,7 @@ static void judge(RuleId id, BlendRuleTally *tally, const BlendCase *one, BlendP
         (suite || seen->ulp > 0.5) && seen->error > with_slack(one, allowed_error(id, one));
     bool first = outside && tally->outside == 0;
     tally->outside += outside;
-    if (first || (outside == (tally->outside > 0) && seen->scaled > tally->largest))
+    if (first || (outside == (tally->outside > 0) && seen->scaled > tally->example_error))
         keep_example(tally, one, place, seen, got);
     tally->largest = fmax(tally->largest, seen->scaled);
     tally->largest_real = fmax(tally->largest_real, seen->error);
@@ -429,8 +430,9 @@ void blend_rules_merge(BlendRuleTally *tallies, const BlendRuleTally *later)
 {
     for (int i = 0; i < BLEND_RULES; i++) {
         BlendRuleTally merged = tallies[i];
-        bool farther = later[i].outside ? !merged.outside || later[i].largest > merged.largest
-                                        : !merged.outside && later[i].largest > merged.largest;
+        bool farther = later[i].outside
+                           ? !merged.outside || later[i].example_error > merged.example_error
+                           : !merged.outside && later[i].example_error > merged.example_error;
         if (later[i].has_example && (!merged.has_example || farther))
             merged = later[i];
         merged.judged = tallies[i].judged + later[i].judged;

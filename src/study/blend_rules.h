@@ -36,6 +36,7 @@ typedef struct BlendRuleTally {
                           * operands, products and result */
     double largest_real; /* the same as a number */
     bool has_example;    /* the value farthest outside, or else with the largest error */
+    double example_error; /* its |stored − exact|, as `largest` */
     int channel;
     VectorSet set; /* of the vector */
     uint64_t index;
