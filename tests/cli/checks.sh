@@ -1,5 +1,8 @@
 # shellcheck shell=sh
 # For the scripts beside it, which read it first: a scratch directory to work in, and counts.
+case ${peel-} in
+*/*) peel=$(realpath "$peel") || exit 1 ;;
+esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

@@ -4,8 +4,8 @@
 # RUNS: so many of each command (default 0: each allocation, alone and with all that follow); below
 # 10 the commands that take long are left out.
 set -u
-faulty=$1
-peel=$2
+faulty=$(realpath "$1") || exit 1
+peel=$(realpath "$2") || exit 1
 runs=${3-0}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -11,8 +11,8 @@
 # not the one in data/golden/models.txt; --update writes that. --gltf takes glTF files alone.
 # MODELS_MEBIBYTES, in the environment, is another limit than 1,024; 0: none.
 set -u
-peel=$1
-golden=$2/data/golden/models.txt
+peel=$(realpath "$1") || exit 1
+golden=$(realpath "$2")/data/golden/models.txt || exit 1
 shift 2
 folder=/usr/share/assimp/models
 only_gltf=
