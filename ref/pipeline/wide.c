@@ -75,7 +75,8 @@ void wide_make(const Setup *setup, Wide *out)
     PixelRect box = setup->box;
     for (int i = 0; i < 3; i++)
         out->planes[i] = make_plane(&setup->edge[i]);
-    out->tiles = (PixelRect){box.x0 / TILE, box.y0 / TILE, box.x1 / TILE, box.y1 / TILE};
+    out->tiles = (PixelRect){(int16_t)(box.x0 / TILE), (int16_t)(box.y0 / TILE),
+                             (int16_t)(box.x1 / TILE), (int16_t)(box.y1 / TILE)};
     out->alone = within_tile(v[0]->x_fixed8, v[1]->x_fixed8, v[2]->x_fixed8) &&
                  within_tile(v[0]->y_fixed8, v[1]->y_fixed8, v[2]->y_fixed8);
 }
