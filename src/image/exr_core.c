@@ -40,6 +40,11 @@ int exr_channel_index(PixelFormat format, const char *name)
 /* An allocation of OpenEXRCore's failed: it says something else of that, or goes on without. */
 static _Thread_local bool starved;
 
+static bool is_memory(exr_result_t code)
+{
+    return starved || code == EXR_ERR_OUT_OF_MEMORY;
+}
+
 void exr_message_keep(exr_const_context_t context, exr_result_t code, const char *text)
 {
     (void)context;
@@ -56,7 +61,7 @@ void exr_message_clear(void)
 
 const char *exr_message(exr_result_t code)
 {
-    if (starved || code == EXR_ERR_OUT_OF_MEMORY)
+    if (is_memory(code))
         return "out of memory";
     return message[0] ? message : exr_get_default_error_message(code);
 }
@@ -75,8 +80,7 @@ bool exr_find_channel(const exr_attr_chlist_t *list, const char *name, exr_pixel
 
 Result exr_reader_fail(const ExrReader *reader, exr_result_t code)
 {
-    bool memory = starved || code == EXR_ERR_OUT_OF_MEMORY;
-    return result_fail(memory ? RESULT_NO_MEMORY : RESULT_BAD_INPUT,
+    return result_fail(is_memory(code) ? RESULT_NO_MEMORY : RESULT_BAD_INPUT,
                        "%s: not a readable OpenEXR file: %s", reader->path, exr_message(code));
 }
 
@@ -178,7 +182,7 @@ Result exr_output_fail(const ExrOutput *output, exr_result_t code)
     if (output->file.error)
         return result_fail(RESULT_IO, "%s: cannot write this file: %s", output->path,
                            strerror(output->file.error));
-    return result_fail(code == EXR_ERR_OUT_OF_MEMORY ? RESULT_NO_MEMORY : RESULT_INTERNAL,
+    return result_fail(is_memory(code) ? RESULT_NO_MEMORY : RESULT_INTERNAL,
                        "%s: OpenEXR refused to write: %s", output->path, exr_message(code));
 }
 

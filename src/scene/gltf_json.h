@@ -78,8 +78,7 @@ void gltf_json_free(GltfJson *json); /* what gltf_read made */
 
 /* A new document with nothing but triangles, materials' factors and nodes. The indices of nodes,
  * meshes and materials are kept; the uri of a buffer is its index, and its byteLength may be up to
- * GLTF_STRIDE_END more than it has. Without memory it may lack
- * parts: see base/json_memory.h. */
+ * GLTF_STRIDE_END more than it has. Without memory it may lack parts: see base/json_memory.h. */
 json_t *gltf_json_reduced(const GltfJson *json);
 
 /* One warning that names everything noted, extensions included; silent when there is nothing. */
