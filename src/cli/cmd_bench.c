@@ -340,9 +340,31 @@ static Result write_files(const BenchCommand *command, const BenchReport *report
     return result;
 }
 
+/* A setting that is given, and that a format changes, would count for nothing. */
+static Result check_formats(const BenchCommand *command)
+{
+    const int *given = command->render.settings;
+    for (int f = 0; f < command->plan.format_count; f++) {
+        const BenchFormat *format = &command->plan.formats[f];
+        RenderDesc desc = {0};
+        for (int i = 0; i < SETTING_COUNT; i++)
+            if (given[i] >= 0)
+                setting_put(&desc, (SettingId)i, given[i]);
+        bench_format_apply(format, &desc);
+        for (int i = 0; i < SETTING_COUNT; i++)
+            if (given[i] >= 0 && setting_get(&desc, (SettingId)i) != given[i])
+                return result_fail(RESULT_BAD_INPUT,
+                                   "--formats %s: it has another --%s; expected one of the two",
+                                   format->name, setting_info((SettingId)i)->name);
+    }
+    return RESULT_OK;
+}
+
 static Result run(BenchCommand *command, const char *line, BenchReport *report)
 {
-    Result result = load_scenes(command);
+    Result result = check_formats(command);
+    if (result == RESULT_OK)
+        result = load_scenes(command);
     if (result == RESULT_OK)
         result = options_check_outputs(command->json, NULL, command->report);
     if (result != RESULT_OK)
@@ -362,14 +384,24 @@ enum {
     ROOFLINE_STRETCH_MS = 40
 };
 
+/* Whether there is anything that a measurement of the machine alone has no use for. */
+static bool has_frames(const BenchCommand *command)
+{
+    const BenchPlan *plan = &command->plan;
+    return command->scene_count || command->has_renderers || command->paper || command->no_errors ||
+           command->report || command->render.given || plan->runs || plan->method_count ||
+           plan->pass_count || plan->light_count || plan->format_count || plan->size_count ||
+           plan->thread_count > 1;
+}
+
 static int run_roofline(const BenchCommand *command)
 {
     const BenchPlan *plan = &command->plan;
     RooflineReport report;
     Result result = options_check_output(command->json);
-    if (command->scene_count || plan->thread_count > 1 || command->report)
-        result = result_fail(RESULT_BAD_INPUT, "--roofline: expected no scene, no --report and at "
-                                               "most one value of --threads");
+    if (has_frames(command))
+        result = result_fail(RESULT_BAD_INPUT, "--roofline: expected no scene and no options but "
+                                               "--json and one value of --threads");
     if (result == RESULT_OK)
         result = roofline_run(roofline_kernels, plan->threads[0], ROOFLINE_STRETCH_MS, &report);
     if (result != RESULT_OK)

@@ -93,8 +93,9 @@ static const struct argp command_argp = {
 static int list(const HardCommand *command)
 {
     size_t count;
-    if (command->json || command->report || command->folder || command->slice)
-        return options_fail(result_fail(RESULT_BAD_INPUT, "hard --list: expected no other option"));
+    if (command->count || command->json || command->report || command->folder || command->slice)
+        return options_fail(
+            result_fail(RESULT_BAD_INPUT, "hard --list: expected neither a case nor an option"));
     const HardScene *scenes = hard_scenes_table(&count);
     for (size_t i = 0; i < count; i++)
         printf("%-26s %s\n%-26s %s\n", scenes[i].name, scenes[i].why, "", scenes[i].source);

@@ -12,7 +12,7 @@
 typedef struct PlanCommand {
     RenderOptions render;
     const char *json;
-    bool search;
+    bool search, has_metric;
     double max_error;
     PlanMetric metric;
     char *kept; /* what of the command line stays whatever is chosen */
@@ -60,7 +60,12 @@ static error_t parse(int key, char *argument, struct argp_state *state)
                    ? 0
                    : options_error("--max-error %s: expected a number from 0", argument);
     case KEY_METRIC:
+        command->has_metric = true;
         return parse_metric(argument, &command->metric);
+    case ARGP_KEY_SUCCESS:
+        return command->has_metric && !command->search
+                   ? options_error("--metric: expected --max-error E, of which it says what E is")
+                   : 0;
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &command->render;
         return 0;

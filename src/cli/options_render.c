@@ -267,10 +267,8 @@ error_t options_gl(const char *text)
 static error_t parse_method(const char *text, RenderOptions *options)
 {
     options->all_methods = strcmp(text, "all") == 0;
-    if (options->all_methods)
-        return 0;
-    options->has_method = true;
-    return options_method(text, &options->desc);
+    options->has_method = !options->all_methods;
+    return options->all_methods ? 0 : options_method(text, &options->desc);
 }
 
 error_t options_method(const char *text, RenderDesc *desc)

@@ -64,8 +64,10 @@ void bench_format_apply(const BenchFormat *format, RenderDesc *desc)
 {
     if (format->seed)
         render_desc_seed_profile(desc);
-    if (format->gbuffer >= 0)
+    if (format->gbuffer >= 0) {
         desc->gbuffer = (GBufferFormat)format->gbuffer;
+        desc->position = POSITION_RECONSTRUCT; /* a compact one stores none */
+    }
     if (format->depth >= 0)
         desc->depth = (PixelFormat)format->depth;
     if (format->accum >= 0)

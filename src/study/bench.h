@@ -36,7 +36,7 @@ typedef struct BenchRenderer {
 typedef struct BenchFormat {
     char name[48];
     bool seed;                 /* the profile, first */
-    int gbuffer, depth, accum; /* the enums' values; −1: as it is */
+    int gbuffer, depth, accum; /* the enums' values (gbuffer: compact); −1: as it is */
 } BenchFormat;
 
 bool bench_format_parse(const char *text, BenchFormat *out);

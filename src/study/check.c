@@ -92,10 +92,16 @@ static Result load_files(CheckRun *run)
 
 static Result load(CheckRun *run)
 {
-    bool trace = false;
+    const GivenMeaning *meaning = &run->check->meaning;
+    bool trace = false, meant = meaning->encoding || meaning->rows || meaning->alpha;
     Result result = store_create(0, &run->theirs);
     if (result == RESULT_OK && run->check->theirs)
         result = trace_file_is(run->check->theirs, &trace);
+    if (result == RESULT_OK && trace && meant && run->check->file_count == 0)
+        result = result_fail(RESULT_BAD_INPUT,
+                             "%s: a trace says itself what its values mean; expected none of "
+                             "--encoding, --flip, --no-flip and --alpha",
+                             run->check->theirs);
     if (result == RESULT_OK && run->check->theirs)
         result = trace ? load_trace(run, run->check->theirs)
                        : load_image(run, run->check->theirs, &run->image);

@@ -75,6 +75,12 @@ refused 'too many values' tutorial --passes "$(seq -s, 1 33)"
 refused 'json nowhere' tutorial --json none/x.json
 refused 'report over a file' tutorial --report bench.json
 refused 'roofline of a scene' tutorial --roofline
+refused 'roofline of a size' --roofline --size 64x36
+refused 'roofline of settings' --roofline --ggx stable
+refused 'a setting that a format changes' tutorial --formats default,rgba8 --accum rgba16f
+check 'which' grep -q -- '--formats rgba8: it has another --accum' output
+refused 'a setting that the profile changes' tutorial --formats seed --ggx stable
+refused 'positions of a compact G-buffer' tutorial --formats compact --position buffer
 refused 'no memory' tutorial --size 64x36 --no-error --max-memory 4K
 mkdir empty
 exits 4 'no gnuplot' env PATH="$work/empty" "$peel" bench tutorial --size 16x9 --passes 1,2 \

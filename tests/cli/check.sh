@@ -45,6 +45,8 @@ check 0 truth.exr
 check 0 truth.exr --bound
 check 0 right_trace.exr
 check 0 right_trace.exr --bound
+check 4 right_trace.exr --flip
+one_line 'a trace that means something else'
 check 2 truth.exr --tolerance 0
 oiiotool right.exr -d half -o half.exr
 check 0 half.exr

@@ -25,6 +25,7 @@ check 'data/hard is what --export writes' diff -r scenes "$source/data/hard"
 exits 0 'a file of it' "$peel" compare "$source/data/hard/fan.gltf" --size 48x48
 exits 4 'no such case' "$peel" hard no_such_case
 check 'one line' test "$(wc -l <output)" -eq 1
+exits 4 'a list of one case' "$peel" hard --list fan
 exits 4 'json nowhere' "$peel" hard fan --json none/x.json
 exits 4 'report over a file' "$peel" hard fan --report hard.json
 

@@ -103,6 +103,7 @@ refused 'no number' 'expected a number from 0' tutorial --max-error few
 refused 'negative' 'expected a number from 0' tutorial --max-error -1
 refused 'NaN' 'expected a number from 0' tutorial --max-error nan
 refused 'metric' 'expected max, rmse or p99' tutorial --metric psnr
+refused 'metric alone' 'expected --max-error' tutorial --metric rmse
 refused 'model' 'expected needed or all' tutorial --model some
 refused 'JSON nowhere' 'nowhere' tutorial --size 8x8 --json nowhere/p.json
 refused 'edges' 'plain images' tutorial --size 8x8 --method linked-list --post edges --max-error 1
