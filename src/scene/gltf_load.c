@@ -64,9 +64,11 @@ static bool material_flag(const struct aiMaterial *from, const char *key)
 }
 
 /* Assimp fills in glTF's defaults: base colour 1, metallic 1, roughness 1, OPAQUE, cutoff 0.5.
- * json: the same material in the document; NULL for the default one. */
-static uint32_t add_material(Loader *loader, const struct aiMaterial *from, const json_t *json)
+ * number: of the same material in the document; SIZE_MAX for the default one. */
+static uint32_t add_material(Loader *loader, const struct aiMaterial *from, size_t number)
 {
+    const json_t *json = gltf_json_element(loader->json, "materials", number);
+    Builder *builder = &loader->builder;
     Material material = {.occlusion = 1.0f};
     struct aiColor4D color = {1.0f, 1.0f, 1.0f, 1.0f};
     struct aiString mode = {0}, name = {0};
@@ -86,14 +88,19 @@ static uint32_t add_material(Loader *loader, const struct aiMaterial *from, cons
     else if (strcmp(mode.data, "MASK") == 0)
         material.alpha_mode = ALPHA_MASK;
     material.base_color_texture = gltf_texture_add(
-        &loader->textures, &loader->builder,
-        gltf_surface_texture(loader->json, json, "baseColorTexture"), TEXTURE_SRGB);
+        &loader->textures, builder, gltf_surface_texture(loader->json, json, "baseColorTexture"),
+        TEXTURE_SRGB);
     material.metallic_roughness_texture = gltf_texture_add(
-        &loader->textures, &loader->builder,
+        &loader->textures, builder,
         gltf_surface_texture(loader->json, json, "metallicRoughnessTexture"), TEXTURE_LINEAR);
     /* Assimp cuts a long one off, within a character even. */
     const char *own_name = json_string_value(json_object_get(json, "name"));
-    return builder_material(&loader->builder, &material, own_name ? own_name : name.data);
+    uint32_t added = builder_material(builder, &material, own_name ? own_name : name.data);
+    /* Here, and lights and cameras below, while the number in the document is known. */
+    if (!builder->result)
+        builder->result =
+            scene_validate_material(&builder->scene, &builder->scene.materials[added], number);
+    return added;
 }
 
 /* ---- nodes ---------------------------------------------------------------------------------- */
@@ -167,10 +174,8 @@ static uint32_t find_material(Loader *loader, const json_t *primitive, unsigned 
 {
     uint32_t *material = &loader->materials[number];
     if (*material == UINT32_MAX)
-        *material =
-            add_material(loader, loader->assimp->mMaterials[number],
-                         gltf_json_element(loader->json, "materials",
-                                           gltf_json_index(primitive, "material", SIZE_MAX)));
+        *material = add_material(loader, loader->assimp->mMaterials[number],
+                                 gltf_json_index(primitive, "material", SIZE_MAX));
     return *material;
 }
 
@@ -216,10 +221,11 @@ static Matrix unmirror(const json_t *node, Matrix local)
 static void add_camera(Loader *loader, const json_t *node, const Matrix *world,
                        const Matrix *upright)
 {
-    const json_t *from =
-        gltf_json_element(loader->json, "cameras", gltf_json_index(node, "camera", SIZE_MAX));
+    size_t number = gltf_json_index(node, "camera", SIZE_MAX);
+    const json_t *from = gltf_json_element(loader->json, "cameras", number);
     const json_t *perspective = json_object_get(from, "perspective");
     const char *name = json_string_value(json_object_get(node, "name"));
+    Builder *builder = &loader->builder;
     if (!perspective)
         return;
     const json_t *far = json_object_get(perspective, "zfar");
@@ -237,7 +243,10 @@ static void add_camera(Loader *loader, const json_t *node, const Matrix *world,
     }
     if (!name)
         name = json_string_value(json_object_get(from, "name"));
-    builder_camera(&loader->builder, &camera, name);
+    builder_camera(builder, &camera, name);
+    if (!builder->result)
+        builder->result =
+            scene_validate_camera(&builder->scene.cameras[builder->scene.camera_count - 1], number);
 }
 
 /* Three numbers of an extra into out; false where it is absent. */
@@ -262,9 +271,9 @@ static void add_light(Loader *loader, const json_t *node, const Matrix *world)
     const json_t *extensions = json_object_get(loader->json->root, "extensions");
     const json_t *reference =
         json_object_get(json_object_get(node, "extensions"), "KHR_lights_punctual");
+    size_t number = gltf_json_index(reference, "light", SIZE_MAX);
     const json_t *from = json_array_get(
-        json_object_get(json_object_get(extensions, "KHR_lights_punctual"), "lights"),
-        gltf_json_index(reference, "light", SIZE_MAX));
+        json_object_get(json_object_get(extensions, "KHR_lights_punctual"), "lights"), number);
     const char *type = json_string_value(json_object_get(from, "type"));
     if (!type || strcmp(type, "point") != 0)
         return;
@@ -279,6 +288,8 @@ static void add_light(Loader *loader, const json_t *node, const Matrix *world)
     light.range = (float)json_number_value(json_object_get(from, "range")); /* 0 without one */
     extra_triple(loader, node, "attenuation", light.attenuation);
     builder_light(&loader->builder, &light);
+    if (!loader->builder.result)
+        loader->builder.result = scene_validate_light(&light, number);
 }
 
 static void read_surroundings(Loader *loader, const json_t *node)

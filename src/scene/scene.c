@@ -138,9 +138,8 @@ static Result check_texture(size_t number, const Texture *texture)
     return RESULT_OK;
 }
 
-static Result check_material(const Scene *scene, size_t number)
+Result scene_validate_material(const Scene *scene, const Material *material, size_t number)
 {
-    const Material *material = &scene->materials[number];
     const struct {
         const char *what;
         float value;
@@ -259,7 +258,7 @@ static Result check_instances(const Scene *scene)
     return result;
 }
 
-static Result check_light(size_t number, const Light *light)
+Result scene_validate_light(const Light *light, size_t number)
 {
     for (int i = 0; i < 3; i++) {
         if (!within(light->position[i], -COORDINATE_LIMIT, COORDINATE_LIMIT))
@@ -289,24 +288,23 @@ static Result check_light(size_t number, const Light *light)
     return RESULT_OK;
 }
 
-Result scene_validate_camera(const Scene *scene, size_t camera)
+Result scene_validate_camera(const Camera *camera, size_t number)
 {
-    const Camera *given = &scene->cameras[camera];
     Matrix view;
-    if (!given->name)
-        return result_fail(RESULT_BAD_INPUT, "camera %zu: no name", camera);
-    if (!(given->yfov > 0.0 && given->yfov < PI))
+    if (!camera->name)
+        return result_fail(RESULT_BAD_INPUT, "camera %zu: no name", number);
+    if (!(camera->yfov > 0.0 && camera->yfov < PI))
         return result_fail(RESULT_BAD_INPUT,
                            "camera %zu: vertical field of view is %g radians, expected between 0 "
                            "and pi",
-                           camera, given->yfov);
-    if (!(given->near > 0.0 && isfinite(given->near) && given->far > given->near))
+                           number, camera->yfov);
+    if (!(camera->near > 0.0 && isfinite(camera->near) && camera->far > camera->near))
         return result_fail(RESULT_BAD_INPUT,
-                           "camera %zu: near %g and far %g, expected 0 < near < far", camera,
-                           given->near, given->far);
-    Result result = check_matrix("camera", camera, &given->world);
-    if (!result && !matrix_invert_affine(&given->world, &view))
-        return result_fail(RESULT_BAD_INPUT, "camera %zu: world matrix has no inverse", camera);
+                           "camera %zu: near %g and far %g, expected 0 < near < far", number,
+                           camera->near, camera->far);
+    Result result = check_matrix("camera", number, &camera->world);
+    if (!result && !matrix_invert_affine(&camera->world, &view))
+        return result_fail(RESULT_BAD_INPUT, "camera %zu: world matrix has no inverse", number);
     return result;
 }
 
@@ -334,13 +332,13 @@ Result scene_validate(const Scene *scene)
     for (size_t i = 0; !result && i < scene->texture_count; i++)
         result = check_texture(i, &scene->textures[i]);
     for (size_t i = 0; !result && i < scene->material_count; i++)
-        result = check_material(scene, i);
+        result = scene_validate_material(scene, &scene->materials[i], i);
     if (!result)
         result = check_instances(scene);
     for (size_t i = 0; !result && i < scene->light_count; i++)
-        result = check_light(i, &scene->lights[i]);
+        result = scene_validate_light(&scene->lights[i], i);
     for (size_t i = 0; !result && i < scene->camera_count; i++)
-        result = scene_validate_camera(scene, i);
+        result = scene_validate_camera(&scene->cameras[i], i);
     return result;
 }
 

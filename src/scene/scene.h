@@ -107,8 +107,11 @@ uint64_t scene_triangle_count(const Scene *scene); /* over all instances */
  * precision cannot overflow), and there are fewer than 2^32 − 1 triangles over all instances.
  * Zero-area triangles and singular instance matrices are legal. NO_MEMORY is possible. */
 Result scene_validate(const Scene *scene);
-/* Of these, the rules of one camera; of ambient, background, rotation and name. */
-Result scene_validate_camera(const Scene *scene, size_t camera);
+/* Of these, the rules of one material, light or camera, which messages call `number`; of ambient,
+ * background, rotation and name. */
+Result scene_validate_material(const Scene *scene, const Material *material, size_t number);
+Result scene_validate_light(const Light *light, size_t number);
+Result scene_validate_camera(const Camera *camera, size_t number);
 Result scene_validate_surroundings(const Scene *scene);
 
 /* World-space bounding box of all instances. False when there is no vertex. */

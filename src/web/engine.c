@@ -215,7 +215,7 @@ int engine_set_camera(int index, const double world[16], double yfov, double nea
     camera->yfov = yfov;
     camera->near = near;
     camera->far = far;
-    Result result = scene_validate_camera(scene, (size_t)index);
+    Result result = scene_validate_camera(&scene->cameras[index], (size_t)index);
     if (result != RESULT_OK)
         *camera = before;
     return result;

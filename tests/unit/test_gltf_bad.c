@@ -334,6 +334,29 @@ START_TEST(wrong_types)
 }
 END_TEST
 
+/* Messages have the document's numbers, also behind materials, lights and cameras that nothing
+ * uses. */
+START_TEST(numbers)
+{
+    refused("\"materials\":[{},{},{\"pbrMetallicRoughness\":{\"metallicFactor\":2}}],"
+            "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":2,"
+            "\"indices\":2}]}]"
+            "," ONE_NODE,
+            RESULT_BAD_INPUT, "material 2: metallic is 2");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":1}],"
+            "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}},"
+            "{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":2,\"zfar\":1}}]",
+            RESULT_BAD_INPUT, "camera 1: near 2 and far 1");
+    refused(QUAD_MESH ",\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},"
+                      "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":1}}}],"
+                      "\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{"
+                      "\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\"},"
+                      "{\"type\":\"point\",\"intensity\":1e13}]}}",
+            RESULT_BAD_INPUT, "light 1: intensity is 1e+13");
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("gltf_bad");
@@ -341,6 +364,7 @@ int main(void)
     tcase_set_timeout(test, 120);
     tcase_add_checked_fixture(test, scratch_make, scratch_remove);
     tcase_add_test(test, bad_files);
+    tcase_add_test(test, numbers);
     tcase_add_test(test, deep_garbage);
     tcase_add_test(test, truncated_files);
     tcase_add_test(test, embedded_buffers);
