@@ -340,8 +340,7 @@ START_TEST(numbers)
 {
     refused("\"materials\":[{},{},{\"pbrMetallicRoughness\":{\"metallicFactor\":2}}],"
             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":2,"
-            "\"indices\":2}]}]"
-            "," ONE_NODE,
+            "\"indices\":2}]}]," ONE_NODE,
             RESULT_BAD_INPUT, "material 2: metallic is 2");
     refused(QUAD_MESH
             ",\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":1}],"
