@@ -304,11 +304,12 @@ typedef struct PeelLight {
     double position[3];   /* world */
     float color[3];       /* 0 to 1e12 */
     float attenuation[3]; /* c, l, q, from 0, at least 1e-8 together at d = 0.01 */
-    float range;          /* times 1 - (d/range)^4, nothing beyond; 0: no end */
+    float range;          /* times 1 - (d/range)^4, nothing beyond; 0: no end; finite */
 } PeelLight;
 
 /* Looks from eye to target. world, where it is not NULL, is used instead: camera to world, affine,
- * looking down -z with y up (the inverse of a view matrix). */
+ * looking down -z with y up (the inverse of a view matrix); as in glTF 2.0 its scale is left out.
+ * A projection that does not fit in floats is refused when it is rendered. */
 typedef struct PeelCamera {
     double eye[3], target[3], up[3]; /* up: not along the gaze */
     const double *world;
@@ -471,10 +472,10 @@ PEEL_API PeelResult peel_scene_render(const PeelScene *scene, const PeelSettings
 /* ---- comparing ------------------------------------------------------------------------------- */
 
 /* How b differs from a, value by value; what `peel diff` prints. NaN equals NaN, and an infinity
- * one of its sign; values that are not finite are left out of the averages. Integer formats count
- * as numbers from 0 to 1. */
+ * one of its sign; values that are not finite are left out of the averages. Normalized formats
+ * count as numbers from 0 to 1, PEEL_R32UI as its integers. */
 typedef struct PeelDifference {
-    uint64_t pixels, differing;        /* pixels with any stored bit that differs */
+    uint64_t pixels, differing; /* pixels with any stored bit that differs, but those of NaN */
     uint64_t values, differing_values; /* over all channels */
     uint64_t nonfinite_a, nonfinite_b;
     uint64_t broken;        /* pixels not finite on one side alone, or otherwise */

@@ -181,34 +181,53 @@ static void release(FileWriter *writer)
     *writer = (FileWriter){0};
 }
 
-/* Without links; they last as long as the program. */
-static char **kept;
+/* They last as long as the program. */
+typedef struct Kept {
+    char *place; /* without links */
+    bool written;
+} Kept;
+static Kept *kept;
 static size_t kept_count, kept_capacity;
+static bool once;
 
-void file_keep(const char *path)
+static void keep(const char *path, bool written)
 {
-    struct stat status;
     void *places = kept;
-    bool regular = stat(path, &status) == 0 && S_ISREG(status.st_mode); /* a device takes both */
-    char *place = regular ? realpath(path, NULL) : NULL;
+    char *place = realpath(path, NULL);
     if (place && memory_grow(&places, &kept_capacity, kept_count + 1, sizeof *kept) == RESULT_OK) {
         kept = places;
-        kept[kept_count++] = place;
+        kept[kept_count++] = (Kept){place, written};
     } else {
         free(place);
     }
 }
 
+void file_keep(const char *path)
+{
+    struct stat status;
+    if (stat(path, &status) == 0 && S_ISREG(status.st_mode)) /* a device takes both */
+        keep(path, false);
+}
+
+void file_write_once(void)
+{
+    once = true;
+}
+
 Result file_check_kept(const char *path)
 {
     char *place = kept_count ? realpath(path, NULL) : NULL;
-    bool found = false;
+    const Kept *found = NULL;
     for (size_t i = 0; place && i < kept_count; i++)
-        found = found || strcmp(kept[i], place) == 0;
+        if (strcmp(kept[i].place, place) == 0)
+            found = &kept[i];
     free(place);
-    return found ? result_fail(RESULT_BAD_INPUT,
-                               "%s: an input, expected another name for the output", path)
-                 : RESULT_OK;
+    if (!found)
+        return RESULT_OK;
+    return found->written ? result_fail(RESULT_BAD_INPUT,
+                                        "%s: two outputs in one file, expected another name", path)
+                          : result_fail(RESULT_BAD_INPUT,
+                                        "%s: an input, expected another name for the output", path);
 }
 
 Result file_writer_open(const char *path, FileWriter *out)
@@ -317,6 +336,8 @@ Result file_writer_close(FileWriter *writer, bool commit)
     }
     if (commit && writer->error)
         result = fail_write(writer->path, writer->error);
+    else if (commit && writer->temporary && once)
+        keep(writer->path, true);
     release(writer);
     return result;
 }

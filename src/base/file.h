@@ -46,7 +46,10 @@ Result file_write(const char *path, const void *data, size_t size);
  * from now on. Not while other threads write files. */
 void file_keep(const char *path);
 
-/* BAD_INPUT when path is such a file. */
+/* From now on a regular file that was written is kept, too: two outputs must not be one file. */
+void file_write_once(void);
+
+/* BAD_INPUT when path is a file that is kept. */
 Result file_check_kept(const char *path);
 
 /* The whole of a regular file below 4 GiB. The caller frees *bytes, which has a 0 behind its end.

@@ -39,7 +39,9 @@ static const struct argp_option command_options[] = {
      "the name of a format instead, the setting below",
      0},
     {"tolerance", KEY_TOLERANCE, "T", 0,
-     "Allowed difference of linear values, relative to max(1, value) (default: the method's)", 0},
+     "Allowed difference of linear values, relative to max(1, value) (default: the method's); of "
+     "depths 1e-6, whatever T is",
+     0},
     {"bound", KEY_BOUND, 0, 0,
      "Allow each pixel what single precision may do to it instead, from truth", 0},
     {"json", KEY_JSON, "FILE", 0, "Write the figures as JSON", 0},
@@ -137,6 +139,9 @@ static Result prepare(const CheckCommand *command)
                            "scene, --layer or --depth");
     if (command->render.all_methods)
         return result_fail(RESULT_BAD_INPUT, "--method all: expected one of them here");
+    if (desc->bound && !command->theirs)
+        return result_fail(RESULT_BAD_INPUT, "--bound: it is of colours in the end, expected an "
+                                             "image or a trace behind the scene");
     if (desc->bound && !method_has_bound(desc))
         return result_fail(RESULT_BAD_INPUT, "--bound: there is none for --method %s",
                            method_info(desc->method)->name);

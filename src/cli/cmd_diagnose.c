@@ -130,9 +130,11 @@ static int run(DiagnoseCommand *command)
 
 static int list(const DiagnoseCommand *command)
 {
-    if (command->render.scene_path || command->image || command->json || command->report)
-        return options_fail(result_fail(RESULT_BAD_INPUT, "diagnose --list: expected no scene, no "
-                                                          "image, no --json and no --report"));
+    const GivenMeaning *meaning = &command->meaning;
+    if (command->render.scene_path || command->image || command->json || command->report ||
+        command->render.given || meaning->encoding || meaning->rows || meaning->alpha)
+        return options_fail(result_fail(
+            RESULT_BAD_INPUT, "diagnose --list: expected no scene, no image and no other option"));
     report_diagnose_list(stdout);
     return EXIT_AGREE;
 }

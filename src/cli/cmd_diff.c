@@ -295,15 +295,15 @@ static int exit_code(const DiffReport *report)
 static void report_sizes(const DiffReport *report)
 {
     const DiffSize *a = &report->sizes[0], *b = &report->sizes[1];
-    bool same = a->width == b->width && a->height == b->height;
-    fprintf(stderr, "peel: sizes differ: %s%s%s has %dx%d pixels", report->paths[0],
-            *report->size_part ? ": " : "", report->size_part, a->width, a->height);
-    if (same)
-        fprintf(stderr, " from %d,%d", a->x, a->y);
-    fprintf(stderr, ", %s has %dx%d", report->paths[1], b->width, b->height);
-    if (same)
-        fprintf(stderr, " from %d,%d", b->x, b->y);
-    fputc('\n', stderr);
+    char from[DIFF_SIDES][48] = {"", ""};
+    if (a->width == b->width && a->height == b->height) {
+        snprintf(from[0], sizeof from[0], " from %d,%d", a->x, a->y);
+        snprintf(from[1], sizeof from[1], " from %d,%d", b->x, b->y);
+    }
+    options_fail(
+        result_fail(RESULT_BAD_INPUT, "sizes differ: %s%s%s has %dx%d pixels%s, %s has %dx%d%s",
+                    report->paths[0], *report->size_part ? ": " : "", report->size_part, a->width,
+                    a->height, from[0], report->paths[1], b->width, b->height, from[1]));
 }
 
 static Result show(DiffCommand *command, const DiffReport *report)

@@ -85,7 +85,10 @@ static Result flatten(const FlattenOptions *options)
         result = exr_deep_read(options->input, limit, &deep);
     if (result != RESULT_OK)
         return result;
-    result = deep_flatten(&deep, &flat);
+    result = deep_room(&deep, (size_t)deep.width * (size_t)deep.height *
+                                  format_pixel_bytes(FORMAT_RGBA32F));
+    if (result == RESULT_OK)
+        result = deep_flatten(&deep, &flat);
     if (result == RESULT_OK)
         result = options_has_extension(options->output, ".png")
                      ? write_display(&flat, options->output)

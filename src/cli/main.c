@@ -152,6 +152,7 @@ int main(int argc, char **argv)
     unsetenv("POSIXLY_CORRECT");
     mp_set_memory_functions(exact_allocate, exact_reallocate, NULL);
     result_warnings_enable(true);
+    file_write_once();
     int code = run(argc, argv);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "peel: standard output: write failed\n");

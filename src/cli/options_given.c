@@ -62,9 +62,9 @@ int options_given_size(const char *path, const GivenImage *given, int width, int
     const Image *stored = &given->stored;
     if (stored->width == width && stored->height == height)
         return 0;
-    fprintf(stderr,
-            "peel: %s: the image has %dx%d pixels, expected %dx%d; --size says what is rendered\n",
-            path, stored->width, stored->height, width, height);
-    options_drop_directory();
+    options_fail(
+        result_fail(RESULT_BAD_INPUT,
+                    "%s: the image has %dx%d pixels, expected %dx%d; --size says what is rendered",
+                    path, stored->width, stored->height, width, height));
     return EXIT_SIZES;
 }

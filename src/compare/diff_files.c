@@ -141,6 +141,7 @@ static bool same_size(DiffReport *report, const char *name, DiffSize a, DiffSize
     report->sizes[0] = a;
     report->sizes[1] = b;
     snprintf(report->size_part, sizeof report->size_part, "%s", name);
+    text_make_line(report->size_part);
     return false;
 }
 
@@ -173,12 +174,14 @@ static Result match_channels(const DiffFilesOptions *options, const char *const 
                        paths[0], names[0], paths[1], names[1]);
 }
 
-/* Of the latest part: keeps the pixels of the pictured part, and no others. */
+/* The latest part is pictured where it is the first, or the first that differs; others keep no
+ * pixels. */
 static void picture(DiffReport *report, Planes planes[DIFF_SIDES])
 {
     int index = (int)report->count - 1;
     DiffPart *part = &report->parts[index];
-    if (report->pictured >= 0 && report->first != index) {
+    const DiffPart *before = report->pictured < 0 ? NULL : &report->parts[report->pictured];
+    if (before && (before->differing || !part->differing)) {
         diff_part_release_pixels(part);
         return;
     }
@@ -229,8 +232,13 @@ static Result compare_deep(const Source sources[DIFF_SIDES], const char *name,
     Planes none[DIFF_SIDES] = {0};
     size_t most = options->diff.max_bytes ? options->diff.max_bytes : SIZE_MAX;
     Result result = RESULT_OK;
-    for (int side = 0; side < DIFF_SIDES && result == RESULT_OK; side++)
+    for (int side = 0; side < DIFF_SIDES && result == RESULT_OK; side++) {
         result = exr_deep_read(sources[side].path, most, &images[side]);
+        if (result == RESULT_OK && images[side].part > 0)
+            result = result_fail(RESULT_UNSUPPORTED,
+                                 "%s: part 0 is of deep tiles, expected deep scanlines",
+                                 sources[side].path);
+    }
     const DeepImage *a = &images[0], *b = &images[1];
     if (result == RESULT_OK && same_size(report, name, deep_size(a), deep_size(b))) {
         DiffPart part = {0};

@@ -28,7 +28,8 @@ typedef struct DiffReport {
     DiffPart *parts;   /* in the order of the first file, then what only the second has */
     size_t count, capacity;
     int first;    /* the first part that differs in a stored value, or −1 */
-    int pictured; /* that one, or the first that was compared: it has its pixels; or −1 */
+    int pictured; /* of those in both files the first that differs, else the first: it has its
+                     pixels; or −1 */
     Planes of[DIFF_SIDES]; /* the pictured part's, where it is flat */
     DiffVerdict verdict;
 } DiffReport;

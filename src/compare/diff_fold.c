@@ -152,6 +152,8 @@ void fold_value(Fold *fold, int index, uint32_t sample, uint32_t a_bits, uint32_
         fold->part->first[1] = fold->pixel.y;
         fold->part->first[2] = index;
     }
+    if (isfinite(error))
+        fold->greatest = fmax(fold->greatest, error);
     if (error > fold->part->max && isfinite(error) && is_averaged(fold, index)) {
         fold->part->max = error;
         fold->part->max_at = fold->pixel;
@@ -265,11 +267,11 @@ static void finish_channels(Fold *fold)
     part->psnr = figures[2];
 }
 
-static bool is_too_much(const DiffThreshold *threshold, uint64_t over, const DiffPart *part)
+static bool is_too_much(const DiffThreshold *threshold, uint64_t over, const Fold *fold)
 {
     return (over > threshold->allowed &&
-            (double)over > threshold->percent / 100.0 * (double)part->pixels) ||
-           part->max > threshold->hard;
+            (double)over > threshold->percent / 100.0 * (double)fold->part->pixels) ||
+           fold->greatest > threshold->hard;
 }
 
 static void fill(const Fold *fold, FoldFetch fetch, const void *context, double *room,
@@ -293,9 +295,9 @@ Result fold_finish(Fold *fold, FoldFetch fetch, const void *context)
     sort_worst(fold);
     part->verdict = DIFF_PASS;
     bool warns = fold->options->warn_always || part->over_fail;
-    if (warns && is_too_much(&fold->options->warn, part->over_warn, part))
+    if (warns && is_too_much(&fold->options->warn, part->over_warn, fold))
         part->verdict = DIFF_WARNING;
-    if (part->broken || is_too_much(&fold->options->fail, part->over_fail, part))
+    if (part->broken || is_too_much(&fold->options->fail, part->over_fail, fold))
         part->verdict = DIFF_FAILURE;
     size_t stride = DIFF_SIDES * (size_t)part->channel_count;
     part->values_block =

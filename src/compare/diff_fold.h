@@ -20,9 +20,10 @@ typedef struct Fold {
     const DiffOptions *options;
     const FoldChannel *channels;
     DiffPart *part;
-    FoldSums *sums; /* of each channel */
-    bool integers;  /* there is nothing else: they count in the part's averages */
-    int capacity;   /* of part->worst */
+    FoldSums *sums;  /* of each channel */
+    bool integers;   /* there is nothing else: they count in the part's averages */
+    int capacity;    /* of part->worst */
+    double greatest; /* error of all channels, integers too */
     bool broken, over_fail;
     uint8_t flags;
     DiffPixel pixel; /* the one being folded */

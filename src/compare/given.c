@@ -297,6 +297,14 @@ static void convert(const GivenImage *given, GivenReading *out)
         }
 }
 
+Result given_check_alpha(const GivenMeaning *options, bool has_alpha)
+{
+    return has_alpha || options->alpha <= GIVEN_ALPHA_NONE
+               ? RESULT_OK
+               : result_fail(RESULT_BAD_INPUT, "--alpha %s: there is no alpha, expected none",
+                             given_alpha_name(options->alpha));
+}
+
 Result given_interpret(const GivenImage *given, const Image *reference, const GivenMeaning *options,
                        GivenReading *out)
 {

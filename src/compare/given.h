@@ -61,6 +61,9 @@ const char *given_alpha_name(GivenAlpha alpha);
 Result given_load(const char *path, const int size[2], GivenImage *out);
 void given_free(GivenImage *given); /* leaves an empty one */
 
+/* BAD_INPUT where options say what alpha means, and no image has any. */
+Result given_check_alpha(const GivenMeaning *options, bool has_alpha);
+
 /* Finds out what `options` leaves to be detected. reference: FORMAT_RGBA32F, linear over the
  * background, A = coverage, and of given's size (INTERNAL otherwise). Without a decision PNG is
  * taken for the seed's display form and EXR for linear, rows for top down. The caller frees with

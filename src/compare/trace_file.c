@@ -1,12 +1,14 @@
 #include "compare/trace_file.h"
 
 #include "base/file.h"
+#include "base/text.h"
 #include "frame/method.h"
 #include "image/dump.h"
 #include "image/exr.h"
 #include "image/exr_planes.h"
 
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,8 +65,12 @@ Result trace_file_is(const char *path, bool *is)
     if (result != RESULT_OK || !exr)
         return result;
     result = exr_file_open(path, &file);
-    for (int i = 0; result == RESULT_OK && i < exr_file_count(file) && !*is; i++)
-        *is = is_buffer_name(exr_file_name(file, i));
+    /* A single part with a name like "display" or "sum.rgba" is an image, unless Peel wrote it. */
+    bool single = result == RESULT_OK && exr_file_count(file) == 1 && !exr_file_is_trace(file);
+    for (int i = 0; result == RESULT_OK && i < exr_file_count(file) && !*is; i++) {
+        const char *name = exr_file_name(file, i);
+        *is = single ? trace_name_step(name) != INT_MAX : is_buffer_name(name);
+    }
     exr_file_close(file);
     return result;
 }
@@ -77,6 +83,10 @@ typedef struct Reader {
 static Result put(void *context, const char *name, const Image *image)
 {
     const Reader *reader = context;
+    char line[DUMP_NAME];
+    snprintf(line, sizeof line, "%s", name);
+    text_make_line(line);
+    name = line;
     if (store_find(reader->store, name) >= 0)
         return result_fail(RESULT_BAD_INPUT, "%s: buffer %s comes twice, expected once",
                            reader->path, name);

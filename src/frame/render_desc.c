@@ -120,15 +120,20 @@ static Result check_choices(const RenderDesc *desc)
     return RESULT_OK;
 }
 
+static const char *format_name(PixelFormat format)
+{
+    return format < FORMAT_COUNT ? format_info(format)->name : "(none)";
+}
+
 static Result check_formats(const RenderDesc *desc)
 {
     PixelFormat depth = render_desc_depth(desc);
     if (desc->accum >= FORMAT_COUNT || format_info(desc->accum)->channels != 4)
-        return result_fail(RESULT_BAD_INPUT, "accumulation in format %d: expected four channels",
-                           (int)desc->accum);
+        return result_fail(RESULT_BAD_INPUT, "accumulation in format %s: expected four channels",
+                           format_name(desc->accum));
     if (depth != FORMAT_D32F && depth != FORMAT_D24 && depth != FORMAT_D16)
-        return result_fail(RESULT_BAD_INPUT, "depth in format %d: expected d32f, d24 or d16",
-                           (int)depth);
+        return result_fail(RESULT_BAD_INPUT, "depth in format %s: expected d32f, d24 or d16",
+                           format_name(depth));
     return RESULT_OK;
 }
 

@@ -21,8 +21,7 @@ struct DeepBlock {
     DeepSample samples[];
 };
 
-/* Whether so many bytes more are allowed; counts them if they are. */
-static Result reserve(DeepImage *image, size_t bytes)
+Result deep_room(const DeepImage *image, size_t bytes)
 {
     size_t left = image->max_bytes - image->bytes;
     if (bytes > left)
@@ -31,8 +30,16 @@ static Result reserve(DeepImage *image, size_t bytes)
                            "KiB (--max-memory)",
                            image->width, image->height, (image->bytes + bytes) >> 10,
                            image->max_bytes >> 10);
-    image->bytes += bytes;
     return RESULT_OK;
+}
+
+/* Counts what there is room for. */
+static Result reserve(DeepImage *image, size_t bytes)
+{
+    Result result = deep_room(image, bytes);
+    if (result == RESULT_OK)
+        image->bytes += bytes;
+    return result;
 }
 
 Result deep_create(int width, int height, size_t max_bytes, DeepImage *out)

@@ -57,7 +57,8 @@ typedef struct DeepImage {
     /* Column-major, for column vectors. Camera: looks down −z, y up. NDC: x and y from −1 to 1, z
      * as the depth range has it. */
     float world_to_camera[16], world_to_ndc[16];
-    /* Of an image from a file. Names with commas between, owned; NULL: none. */
+    /* Of an image from a file: which part it is. Names with commas between, owned; NULL: none. */
+    int part;
     bool half[DEEP_CHANNELS], missing[DEEP_CHANNELS]; /* stored as half; not there at all */
     char *left_out;                                   /* channels that a sample has no place for */
     DeepBlock *blocks;                                /* private */
@@ -71,6 +72,9 @@ void deep_free(DeepImage *image); /* leaves an empty image; an empty one is fine
 /* Zeroed room for count samples, owned by the image and counted in sample_count; for deep_set. Not
  * for two threads at a time. NO_MEMORY when all blocks would take more than max_bytes. */
 Result deep_block(DeepImage *image, size_t count, DeepSample **out);
+
+/* NO_MEMORY, naming the need, where so many bytes beside the image are more than max_bytes. */
+Result deep_room(const DeepImage *image, size_t bytes);
 
 /* Gives pixel (x, y) count samples in a block of the image, front to back. */
 void deep_set(DeepImage *image, int x, int y, DeepSample *samples, uint32_t count);

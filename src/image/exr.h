@@ -40,6 +40,8 @@ Result exr_read_sized(const char *path, int part, const int size[2], Image *out,
 Result exr_part_count(const char *path, int *count);
 /* Whether the file begins as EXR files do; IO or BAD_INPUT when it cannot be read. */
 Result exr_is(const char *path, bool *is);
+/* Whether all channels of a part are HALF. */
+Result exr_is_half(const char *path, int part, bool *half);
 /* Whether a part has a channel of this name. */
 Result exr_has_channel(const char *path, int part, const char *channel, bool *has);
 

@@ -17,7 +17,7 @@ enum {
     DEFLATE_RATIO = 1032 /* no byte of deflate or run lengths gives more bytes */
 };
 
-/* A sample on its way in, with what decides its place. */
+/* A sample with what decides its place in its pixel. */
 typedef struct Incoming {
     DeepSample sample;
     float z_back;
@@ -40,7 +40,8 @@ typedef struct DeepReader {
     size_t sample_bytes; /* of all channels */
     bool has_z_back;
     DeepImage *image;
-    Bytes packed_table, packed, scratch, raw, incoming;
+    Bytes packed_table, packed, scratch, raw, z_back;
+    Bytes incoming;   /* of one pixel */
     uint32_t *counts; /* of one row */
 } DeepReader;
 
@@ -177,6 +178,7 @@ static Result read_header(DeepReader *reader, size_t max_bytes)
     if (!reader->counts)
         return RESULT_NO_MEMORY;
     result = deep_create((int)width, (int)height, max_bytes, reader->image);
+    reader->image->part = reader->part;
     reader->image->has_window = true;
     reader->image->window =
         (ImageWindow){reader->window.min.x, reader->window.min.y, display.min.x,
@@ -254,19 +256,19 @@ static float to_float(const uint8_t *in, exr_pixel_type_t type)
     return type == EXR_PIXEL_UINT ? (float)bits : value;
 }
 
-/* All values of one channel into the samples. */
+/* All values of one channel into the samples, or ZBack's. */
 static void unpack_channel(const uint8_t *in, exr_pixel_type_t type, int target, uint32_t total,
-                           Incoming *out)
+                           DeepSample *out, float *z_back)
 {
     size_t bytes = type == EXR_PIXEL_HALF ? 2 : 4;
     for (uint32_t i = 0; i < total; i++, in += bytes) {
         if (target == ZBACK) {
-            out[i].z_back = to_float(in, type);
+            z_back[i] = to_float(in, type);
             continue;
         }
         float value = to_float(in, type);
         uint32_t id = deep_channels[target].kind == KIND_UINT ? get_u32(in) : 0;
-        void *to = (char *)&out[i].sample + deep_channels[target].offset;
+        void *to = (char *)&out[i] + deep_channels[target].offset;
         if (deep_channels[target].kind == KIND_UINT)
             memcpy(to, &id, sizeof id);
         else
@@ -284,25 +286,49 @@ static int compare_incoming(const void *a, const void *b)
     return p->index < q->index ? -1 : p->index > q->index;
 }
 
-/* Puts one pixel's samples in order: by Z, ZBack and place in the file. */
-static Result sort_pixel(const DeepReader *reader, int x, int y, Incoming *incoming, uint32_t count)
+/* Puts one pixel's samples in order: by Z, ZBack and place in the file. z_back: theirs; NULL where
+ * the file has none. */
+static Result sort_pixel(DeepReader *reader, int x, int y, DeepSample *samples, const float *z_back)
 {
+    uint32_t count = reader->counts[x];
+    Incoming *incoming = (Incoming *)(void *)reader->incoming.data;
     bool sorted = true;
     for (uint32_t i = 0; i < count; i++) {
+        incoming[i] = (Incoming){samples[i], z_back ? z_back[i] : 0.0f, i};
         if (isnan(incoming[i].sample.z) || isnan(incoming[i].z_back))
             return fail_row(reader, y, "Z that is no number");
-        incoming[i].index = i;
         sorted = sorted && (i == 0 || compare_incoming(&incoming[i - 1], &incoming[i]) < 0);
     }
     if (!sorted)
         qsort(incoming, count, sizeof *incoming, compare_incoming);
-    for (uint32_t i = 1; i < count && reader->has_z_back; i++)
+    for (uint32_t i = 1; i < count && z_back; i++)
         if (incoming[i - 1].z_back > incoming[i].sample.z)
             return result_fail(RESULT_UNSUPPORTED,
                                "%s: pixel %d,%d: samples overlap in depth (ZBack), expected one "
                                "behind the other",
                                reader->file.path, x, y);
+    for (uint32_t i = 0; i < count; i++)
+        samples[i] = incoming[i].sample;
     return RESULT_OK;
+}
+
+/* Room for what a row takes beside its samples, within the image's limit. */
+static Result grow_row(DeepReader *reader, size_t size, uint32_t total)
+{
+    uint32_t most = 0;
+    for (int x = 0; x < reader->image->width; x++)
+        most = reader->counts[x] > most ? reader->counts[x] : most;
+    size_t z_back = reader->has_z_back ? total * sizeof(float) : 0;
+    size_t incoming = most * sizeof(Incoming);
+    Result result =
+        deep_room(reader->image, 2 * size + z_back + incoming + reader->packed.capacity);
+    if (result == RESULT_OK)
+        result = grow(&reader->scratch, size);
+    if (result == RESULT_OK)
+        result = grow(&reader->raw, size);
+    if (result == RESULT_OK)
+        result = grow(&reader->z_back, z_back);
+    return result == RESULT_OK ? grow(&reader->incoming, incoming) : result;
 }
 
 /* The chunk's samples, unpacked and in order, into a block of the image. */
@@ -312,34 +338,28 @@ static Result read_samples(DeepReader *reader, int y, const exr_chunk_info_t *ch
     size_t size = chunk->unpacked_size;
     Result result = deep_block(reader->image, total, &samples);
     if (result == RESULT_OK)
-        result = grow(&reader->scratch, size);
-    if (result == RESULT_OK)
-        result = grow(&reader->raw, size);
-    if (result == RESULT_OK)
-        result = grow(&reader->incoming, total * sizeof(Incoming));
+        result = grow_row(reader, size, total);
     if (result != RESULT_OK)
         return result;
     if (!exr_deep_unpack(reader->compression, reader->packed.data, chunk->packed_size,
                          reader->scratch.data, reader->raw.data, size))
         return fail_row(reader, y, "broken samples");
-    Incoming *incoming = (Incoming *)(void *)reader->incoming.data;
+    float *z_back = (float *)(void *)reader->z_back.data;
     for (uint32_t i = 0; i < total; i++)
-        incoming[i] = (Incoming){.sample = {.primitive = DEEP_NO_ID, .material = DEEP_NO_ID}};
+        samples[i] = (DeepSample){.primitive = DEEP_NO_ID, .material = DEEP_NO_ID};
     const uint8_t *in = reader->raw.data;
     for (int i = 0; i < reader->list->num_channels; i++) {
         exr_pixel_type_t type = reader->list->entries[i].pixel_type;
         if (reader->target[i] != UNUSED)
-            unpack_channel(in, type, reader->target[i], total, incoming);
+            unpack_channel(in, type, reader->target[i], total, samples, z_back);
         in += (size_t)total * (type == EXR_PIXEL_HALF ? 2 : 4);
     }
+    uint32_t first = 0;
     for (int x = 0; x < reader->image->width && result == RESULT_OK; x++) {
-        uint32_t count = reader->counts[x];
-        result = sort_pixel(reader, x, y, incoming, count);
-        for (uint32_t i = 0; i < count; i++)
-            samples[i] = incoming[i].sample;
-        deep_set(reader->image, x, y, samples, count);
-        incoming += count;
-        samples += count;
+        const float *pixel_z_back = reader->has_z_back ? z_back + first : NULL;
+        result = sort_pixel(reader, x, y, samples + first, pixel_z_back);
+        deep_set(reader->image, x, y, samples + first, reader->counts[x]);
+        first += reader->counts[x];
     }
     return result;
 }
@@ -352,6 +372,7 @@ static void free_reader(DeepReader *reader)
     free(reader->packed.data);
     free(reader->scratch.data);
     free(reader->raw.data);
+    free(reader->z_back.data);
     free(reader->incoming.data);
     exr_reader_close(&reader->file);
 }

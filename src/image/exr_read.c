@@ -168,10 +168,12 @@ Result exr_reader_image(const ExrReader *reader, int part, const int *size, Imag
     Result result = part_format(reader, part, &format);
     if (result != RESULT_OK)
         return result;
-    exr_attr_box2i_t window;
+    exr_attr_box2i_t window, display;
     int32_t chunk_rows;
     const exr_attr_chlist_t *list;
     exr_result_t code = exr_get_data_window(reader->context, part, &window);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_display_window(reader->context, part, &display);
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_scanlines_per_chunk(reader->context, part, &chunk_rows);
     if (code == EXR_ERR_SUCCESS)
@@ -183,6 +185,12 @@ Result exr_reader_image(const ExrReader *reader, int part, const int *size, Imag
     if (width < 1 || width > EXR_SIZE_MAX || height < 1 || height > EXR_SIZE_MAX || chunk_rows < 1)
         return result_fail(RESULT_BAD_INPUT, "%s: part %d has a size that is not 1 to %d pixels",
                            reader->path, part, (int)EXR_SIZE_MAX);
+    if (window.min.x != display.min.x || window.min.y != display.min.y)
+        return result_fail(RESULT_UNSUPPORTED,
+                           "%s: part %d has pixels from %d,%d on, expected from %d,%d, where its "
+                           "display window begins",
+                           reader->path, part, window.min.x, window.min.y, display.min.x,
+                           display.min.y);
     if (size && (width != size[0] || height != size[1])) {
         *out = (Image){.width = (int)width, .height = (int)height, .format = format};
         return RESULT_OK;
@@ -236,21 +244,46 @@ static void copy_name(const ExrReader *reader, int part, char name[64])
         snprintf(name, 64, "%s", text);
 }
 
+/* The reader is open, and the caller's to close, on success. */
+static Result open_channels(const char *path, int part, ExrReader *reader,
+                            const exr_attr_chlist_t **list)
+{
+    Result result = exr_reader_open(path, reader);
+    if (result != RESULT_OK)
+        return result;
+    exr_result_t code = exr_get_channels(reader->context, part, list);
+    if (code == EXR_ERR_SUCCESS)
+        return RESULT_OK;
+    result = exr_reader_fail(reader, code);
+    exr_reader_close(reader);
+    return result;
+}
+
 Result exr_has_channel(const char *path, int part, const char *channel, bool *has)
 {
     ExrReader reader;
     const exr_attr_chlist_t *list;
     exr_pixel_type_t type;
-    Result result = exr_reader_open(path, &reader);
+    Result result = open_channels(path, part, &reader, &list);
     if (result != RESULT_OK)
         return result;
-    exr_result_t code = exr_get_channels(reader.context, part, &list);
-    if (code == EXR_ERR_SUCCESS)
-        *has = exr_find_channel(list, channel, &type);
-    else
-        result = exr_reader_fail(&reader, code);
+    *has = exr_find_channel(list, channel, &type);
     exr_reader_close(&reader);
-    return result;
+    return RESULT_OK;
+}
+
+Result exr_is_half(const char *path, int part, bool *half)
+{
+    ExrReader reader;
+    const exr_attr_chlist_t *list;
+    Result result = open_channels(path, part, &reader, &list);
+    if (result != RESULT_OK)
+        return result;
+    *half = true;
+    for (int i = 0; i < list->num_channels; i++)
+        *half = *half && list->entries[i].pixel_type == EXR_PIXEL_HALF;
+    exr_reader_close(&reader);
+    return RESULT_OK;
 }
 
 Result exr_read_sized(const char *path, int part, const int size[2], Image *out, char name[64])

@@ -124,6 +124,7 @@ static void add_camera(Builder *builder, size_t number, const PeelCamera *from)
                             "another target than eye, and up beside the gaze",
                             number);
     }
+    scene_unscale_camera(&camera);
     builder_camera(builder, &camera, NULL);
 }
 

@@ -1,6 +1,7 @@
 #include "report/history.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "frame/method.h"
 #include "number/format.h"
 #include "number/numeral.h"
@@ -140,6 +141,7 @@ static void put_fragment(const Writer *writer, const History *history,
     bool wide = is_wide(writer);
     snprintf(name, wide ? sizeof name : NAME + 1, "%s%s%s", instance ? instance : "",
              wide ? " / " : "", wide && material ? material : "");
+    text_make_line(name);
     describe_fate(fragment, fate);
     describe_tests(writer, history, (size_t)(fragment - history->fragments), tests);
     grid_row(grid);

@@ -71,6 +71,18 @@ static Result check_light(const GltfCheck *check, size_t index)
 
 /* ---- nodes ---------------------------------------------------------------------------------- */
 
+/* Other ones would scale and shear. The tolerance is of what exporters round.
+ * Source: glTF 2.0, 3.5.3 (rotation is a unit quaternion). */
+static bool is_unit(const json_t *rotation)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < 4; i++) {
+        double value = json_number_value(json_array_get(rotation, i));
+        sum += value * value;
+    }
+    return !rotation || fabs(sum - 1.0) <= 0.01;
+}
+
 static Result check_placement(const GltfCheck *check, size_t index, const json_t *node)
 {
     if (!gltf_valid_numbers(json_object_get(node, "matrix"), 16) ||
@@ -79,6 +91,8 @@ static Result check_placement(const GltfCheck *check, size_t index, const json_t
         !gltf_valid_numbers(json_object_get(node, "scale"), 3))
         return gltf_fail(check, "node", index,
                          "16 numbers as its matrix, 3 as translation and scale, 4 as rotation");
+    if (!is_unit(json_object_get(node, "rotation")))
+        return gltf_fail(check, "node", index, "a unit quaternion as its rotation");
     return RESULT_OK;
 }
 

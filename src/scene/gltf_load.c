@@ -234,13 +234,7 @@ static void add_camera(Loader *loader, const json_t *node, const Matrix *world,
                      .near = json_number_value(json_object_get(perspective, "znear")),
                      .far = far ? json_number_value(far) : INFINITY};
     memcpy(camera.world.m + 12, world->m + 12, 3 * sizeof *world->m);
-    for (int c = 0; c < 3; c++) {
-        double *axis = camera.world.m + 4 * c;
-        double length = sqrt((axis[0] * axis[0] + axis[1] * axis[1]) + axis[2] * axis[2]);
-        /* Not for what float rounding does: placements stay as they were written. */
-        for (int r = 0; r < 3 && fabs(length - 1.0) > 1e-5; r++)
-            axis[r] /= length;
-    }
+    scene_unscale_camera(&camera);
     if (!name)
         name = json_string_value(json_object_get(from, "name"));
     builder_camera(builder, &camera, name);

@@ -308,6 +308,17 @@ Result scene_validate_camera(const Camera *camera, size_t number)
     return result;
 }
 
+void scene_unscale_camera(Camera *camera)
+{
+    for (int c = 0; c < 3; c++) {
+        double *axis = camera->world.m + 4 * c;
+        double length = sqrt((axis[0] * axis[0] + axis[1] * axis[1]) + axis[2] * axis[2]);
+        /* Not for what float rounding does: placements stay as they were written. */
+        for (int r = 0; r < 3 && length > 0.0 && fabs(length - 1.0) > 1e-5; r++)
+            axis[r] /= length;
+    }
+}
+
 Result scene_validate_surroundings(const Scene *scene)
 {
     for (int i = 0; i < 3; i++)

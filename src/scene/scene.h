@@ -114,6 +114,10 @@ Result scene_validate_light(const Light *light, size_t number);
 Result scene_validate_camera(const Camera *camera, size_t number);
 Result scene_validate_surroundings(const Scene *scene);
 
+/* Brings the axes of its world matrix, but those of length 0, to unit length: lights are at
+ * distances in world units. Source: glTF 2.0, 3.10.1 (a camera knows no scale). */
+void scene_unscale_camera(Camera *camera);
+
 /* World-space bounding box of all instances. False when there is no vertex. */
 bool scene_bounds(const Scene *scene, double low[3], double high[3]);
 

@@ -53,9 +53,28 @@ static Result load_trace(CheckRun *run, const char *path)
     return result;
 }
 
-static Result load_depth(const CheckRun *run, const char *path, Image *out)
+/* Of a colour image, whatever its size, nobody knows which channel would be meant. */
+static Result expect_grey(const Image *image, const char *path)
+{
+    const FormatInfo *info = format_info(image->format);
+    size_t pixels = image->pixels ? (size_t)image->width * (size_t)image->height : 0;
+    bool grey = info->channels == 1 || info->kind == KIND_UNORM;
+    for (size_t i = 0; i < pixels && grey && info->channels > 1; i++) {
+        const char *pixel = (const char *)image->pixels + i * format_pixel_bytes(image->format);
+        grey = format_bits(image->format, pixel, 0) == format_bits(image->format, pixel, 1) &&
+               format_bits(image->format, pixel, 0) == format_bits(image->format, pixel, 2);
+    }
+    return grey ? RESULT_OK
+                : result_fail(RESULT_BAD_INPUT,
+                              "--depth: %s has colours, expected an EXR with one channel or a grey "
+                              "PNG",
+                              path);
+}
+
+static Result load_depth(const CheckRun *run, const char *path, CheckLoaded *loaded)
 {
     const int size[] = {run->desc.width, run->desc.height};
+    Image *out = &loaded->depth;
     bool exr;
     char name[64];
     Result result = exr_is(path, &exr);
@@ -63,17 +82,19 @@ static Result load_depth(const CheckRun *run, const char *path, Image *out)
         return result;
     if (exr) {
         result = exr_read_sized(path, 0, size, out, name);
+        if (result == RESULT_OK)
+            result = exr_is_half(path, 0, &loaded->half);
     } else {
         GivenImage given; /* of grey, each channel has the value */
         result = given_load(path, size, &given);
         *out = given.stored;
     }
-    if (result != RESULT_OK)
-        return result;
-    if (out->width != run->desc.width || out->height != run->desc.height) {
+    if (result == RESULT_OK)
+        result = expect_grey(out, path);
+    if (result == RESULT_OK && (out->width != run->desc.width || out->height != run->desc.height))
         result = size_failure(run, path, "", out->width, out->height);
+    if (result != RESULT_OK)
         image_free(out);
-    }
     return result;
 }
 
@@ -84,28 +105,43 @@ static Result load_files(CheckRun *run)
     Result result = run->files ? RESULT_OK : RESULT_NO_MEMORY;
     for (size_t i = 0; i < check->file_count && result == RESULT_OK; i++) {
         const CheckFile *file = &check->files[i];
-        result = file->depth ? load_depth(run, file->path, &run->files[i].depth)
+        result = file->depth ? load_depth(run, file->path, &run->files[i])
                              : load_image(run, file->path, &run->files[i].image);
     }
     return result;
 }
 
+/* What is said of values has to be of some. */
+static Result check_meaning(const CheckRun *run, bool trace)
+{
+    const CheckDesc *check = run->check;
+    const GivenMeaning *meaning = &check->meaning;
+    bool colors = check->theirs && !trace, alpha = run->image.has_alpha;
+    for (size_t i = 0; i < check->file_count; i++) {
+        colors |= !check->files[i].depth;
+        alpha |= run->files[i].image.has_alpha;
+    }
+    bool rows = colors || check->file_count > 0;
+    if (((meaning->encoding || meaning->alpha) && !colors) || (meaning->rows && !rows))
+        return result_fail(
+            RESULT_BAD_INPUT,
+            "--encoding, --alpha, --flip, --no-flip: expected an image: a trace says "
+            "itself what it holds, and depths have rows alone");
+    return given_check_alpha(meaning, alpha);
+}
+
 static Result load(CheckRun *run)
 {
-    const GivenMeaning *meaning = &run->check->meaning;
-    bool trace = false, meant = meaning->encoding || meaning->rows || meaning->alpha;
+    bool trace = false;
     Result result = store_create(0, &run->theirs);
     if (result == RESULT_OK && run->check->theirs)
         result = trace_file_is(run->check->theirs, &trace);
-    if (result == RESULT_OK && trace && meant && run->check->file_count == 0)
-        result = result_fail(RESULT_BAD_INPUT,
-                             "%s: a trace says itself what its values mean; expected none of "
-                             "--encoding, --flip, --no-flip and --alpha",
-                             run->check->theirs);
     if (result == RESULT_OK && run->check->theirs)
         result = trace ? load_trace(run, run->check->theirs)
                        : load_image(run, run->check->theirs, &run->image);
-    return result == RESULT_OK ? load_files(run) : result;
+    if (result == RESULT_OK)
+        result = load_files(run);
+    return result == RESULT_OK ? check_meaning(run, trace) : result;
 }
 
 /* ---- the reference --------------------------------------------------------------------------- */

@@ -287,8 +287,9 @@ static void flip_rows(Image *image)
     }
 }
 
-static Result check_depth(CheckRun *run, CheckStep *step, const Image *depth, int reference)
+static Result check_depth(CheckRun *run, CheckStep *step, const CheckLoaded *loaded, int reference)
 {
+    const Image *depth = &loaded->depth;
     Image images[2] = {0};
     Result result = widen(depth, &images[0]);
     if (result == RESULT_OK)
@@ -299,15 +300,16 @@ static Result check_depth(CheckRun *run, CheckStep *step, const Image *depth, in
                                               : rows == GIVEN_BOTTOM_UP;
         if (flip)
             flip_rows(&images[0]);
-        note(step, "rows from the %s", flip ? "bottom" : "top");
+        note(step, "%srows from the %s", loaded->half ? "halves, " : "", flip ? "bottom" : "top");
         JudgeDesc desc = {.theirs = &images[0],
                           .reference = &images[1],
                           .encoding = GIVEN_LINEAR,
-                          .format = depth->format,
+                          .format = loaded->half ? FORMAT_RGBA16F : depth->format,
                           .reference_format = store_buffer(run->reference, reference)->format,
                           .channels = 1,
                           .tolerance = DEPTH_TOLERANCE};
         result = judge_step(step, &desc);
+        step->format = depth->format;
     }
     image_free(&images[0]);
     image_free(&images[1]);
@@ -382,7 +384,7 @@ static Result check_file(CheckRun *run, size_t index)
     CheckStep *step = add_step(run, 2 * reference, name);
     if (!step)
         return RESULT_NO_MEMORY;
-    return file->depth ? check_depth(run, step, &run->files[index].depth, reference)
+    return file->depth ? check_depth(run, step, &run->files[index], reference)
                        : check_color(run, step, index, reference);
 }
 

@@ -10,6 +10,7 @@
 typedef struct CheckLoaded {
     GivenImage image;
     Image depth; /* in its own format; the first channel counts */
+    bool half;   /* the depths were stored as halves */
 } CheckLoaded;
 
 typedef struct CheckRun {

@@ -401,14 +401,14 @@ static Result gather(Work *work)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
-static Result check(const RenderDesc *desc, const GivenImage *given)
+static Result check(const RenderDesc *desc, const GivenImage *given, const GivenMeaning *options)
 {
     if (desc->mutations || !obeys(desc->method))
         return result_fail(RESULT_BAD_INPUT, "diagnose: the catalogue of mistakes is of depth "
                                              "peeling, expected --method peel or forward");
     if (given->stored.width != desc->width || given->stored.height != desc->height)
         return result_fail(RESULT_INTERNAL, "diagnose: expected an image of the size rendered");
-    return RESULT_OK;
+    return given_check_alpha(options, given->has_alpha);
 }
 
 static void describe(Work *work)
@@ -460,7 +460,7 @@ Result diagnose_run(const Scene *scene, const RenderDesc *desc, const GivenImage
     *out = (Diagnosis){.format = given->stored.format,
                        .nonfinite = given->nonfinite,
                        .pixels = (uint64_t)desc->width * (uint64_t)desc->height};
-    Result result = check(desc, given);
+    Result result = check(desc, given, options);
     if (result != RESULT_OK)
         return result;
     Clock start = clock_now();

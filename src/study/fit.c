@@ -18,11 +18,13 @@ enum {
 
 /* ---- forms ----------------------------------------------------------------------------------- */
 
-/* Alpha that is the same everywhere was never written, or tells nothing. */
+/* Alpha that is the same number everywhere was never written, or tells nothing. */
 static bool alpha_varies(const Image *stored)
 {
     size_t pixels = (size_t)stored->width * (size_t)stored->height;
     const char *pixel = stored->pixels;
+    if (!isfinite(format_channel(stored->format, pixel, 3)))
+        return true;
     for (size_t i = 0; i < pixels; i++)
         if (format_bits(stored->format, pixel + i * format_pixel_bytes(stored->format), 3) !=
             format_bits(stored->format, pixel, 3))
@@ -131,6 +133,7 @@ static Limits limits_at(const Fit *fit, double theirs, double predicted)
 typedef struct PixelResidual {
     double quantised, tolerant; /* of the values beyond each limit */
     bool far, over_rgb, far_rgb;
+    bool broken; /* theirs is not finite, and should be */
 } PixelResidual;
 
 static PixelResidual residual_of(const Fit *fit, const GivenMeaning *form, const float *theirs,
@@ -140,8 +143,10 @@ static PixelResidual residual_of(const Fit *fit, const GivenMeaning *form, const
     PixelResidual out = {0};
     for (int c = 0; c < fit_channels(form); c++) {
         double t = (double)theirs[c], p = in_form(form, encoded, c);
+        if (isinf(t) && t == p)
+            continue;
         if (!isfinite(t) || !isfinite(p))
-            return (PixelResidual){INFINITY, INFINITY, true, true, true};
+            return (PixelResidual){INFINITY, INFINITY, true, true, true, isfinite(p)};
         Limits limits = limits_at(fit, t, p);
         double difference = fabs(t - p), residual = difference / limits.unit;
         if (difference > limits.quantisation)
@@ -185,6 +190,7 @@ static void measure_row(const Measuring *measuring, int row)
         out->far += residual.far;
         out->over_rgb += residual.over_rgb;
         out->far_rgb += residual.far_rgb;
+        out->broken += residual.broken;
     }
 }
 
@@ -211,6 +217,7 @@ static void add_rows(const Measuring *measuring, uint32_t rows, FitResult *out)
         out->far += measuring->rows[row].far;
         out->over_rgb += measuring->rows[row].over_rgb;
         out->far_rgb += measuring->rows[row].far_rgb;
+        out->broken += measuring->rows[row].broken;
     }
 }
 
@@ -283,7 +290,7 @@ bool fit_tolerates(const Fit *fit, const FitResult *result, bool colors)
     uint64_t pixels = (uint64_t)fit->theirs.width * (uint64_t)fit->theirs.height;
     uint64_t over = colors ? result->over_rgb : result->over;
     uint64_t far = colors ? result->far_rgb : result->far;
-    return over <= pixels / FIT_FEW && far <= pixels / FIT_FEW_FAR;
+    return result->broken == 0 && over <= pixels / FIT_FEW && far <= pixels / FIT_FEW_FAR;
 }
 
 static int compare_floats(const void *a, const void *b)

@@ -56,6 +56,7 @@ typedef struct FitResult {
     uint64_t over;     /* with one beyond the tolerance */
     uint64_t far;      /* with one far beyond it */
     uint64_t over_rgb, far_rgb; /* with such a colour, whatever alpha is */
+    uint64_t broken; /* with one that is not finite, and should be: no rounding makes it */
 } FitResult;
 
 /* options: what is known of their image's meaning; the rest is fitted. given and pool must outlive

@@ -98,6 +98,13 @@ has 'another scene' 'hardly resembles the reference'
 oiiotool right.exr --mulc nan -o nan.exr
 check 2 nan.exr
 has 'NaN' 'every pixel is NaN or infinite'
+oiiotool right.exr --origin +10+10 -o shifted.exr
+check 4 shifted.exr
+one_line 'another data window'
+has 'another data window' 'part 0 has pixels from 10,10 on'
+oiiotool right.exr --eraseattrib peel:format --attrib oiio:subimagename display -o named.exr
+check 0 named.exr
+has 'an image with a name' ' identical$'
 
 # Single passes.
 subimage() {
@@ -111,6 +118,17 @@ check 0 --layer 1 layer.exr --depth 1 depth.exr
 has 'layer' '^peel.1.accum .* agrees$\|^peel.1.accum .* identical$'
 check 0 --depth 1 depth.png
 has 'depth' 'rows from the bottom'
+oiiotool depth.exr -d half -o half_depth.exr
+check 0 --depth 1 half_depth.exr
+has 'depths as halves' 'halves, rows from the top'
+check 4 --depth 1 right.png
+one_line 'colours as depths'
+check 4 --depth 1 right.exr
+has 'colours as depths' 'has colours'
+check 4 --depth 1 depth.exr --encoding srgb
+check 4 --depth 1 depth.exr --bound
+check 4 right.png --alpha coverage
+has 'no alpha' 'there is no alpha'
 check 2 --layer 0 layer.exr
 check 2 right.png --depth 0 depth.exr
 has 'depth of another peel' 'first step that differs: peel.0.depth'
@@ -147,6 +165,14 @@ one_line 'a dump that ends early'
 } >unknown.peel
 check 4 unknown.peel
 has 'a dump of other buffers' 'the reference has none of its buffers'
+{
+    printf 'peel-dump 1 opaque.depth d32f 96x54 top little\n'
+    head -c 20736 /dev/zero
+    printf 'peel-dump 1 peel.0.\033X rgba8 96x54 top little\n'
+    head -c 20736 /dev/zero
+} >escape.peel
+check 2 escape.peel
+has 'a name of control characters' '^peel.0.?X '
 check 4 none.png
 check 4 .
 check 4

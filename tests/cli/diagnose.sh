@@ -105,6 +105,15 @@ refused 3 'another size' tutorial right.png --size 64x47 --json none.json \
 check 'both sizes' grep -q '64x48.*64x47' output
 check 'other sizes: no empty folder' test ! -e page_of_sizes
 check 'nothing written' test ! -e none.json
+# What is not finite is no rounding, of two pixels and of all alphas.
+oiiotool right.exr --fill:color=nan,nan,nan,nan 2x1+3+3 -o two_nan.exr
+oiiotool right.exr --ch R,G,B,A=nan -o alpha_nan.exr
+for name in two_nan alpha_nan; do
+    exits 2 "$name" "$peel" diagnose tutorial $name.exr $settings
+    check "$name" grep -q 'NaN or infinite' output
+done
+refused 4 'a list with options' --list --flip
+refused 4 'no alpha' tutorial right.png $settings --alpha coverage
 refused 4 'cut short' tutorial short.png $settings
 refused 4 'cut short' tutorial short.exr $settings
 refused 4 'no image' tutorial text.png $settings

@@ -272,6 +272,23 @@ refuse 'all methods' 'expected a single method' --scene chain --method all a.exr
 refuse 'grey' 'none in common' grey.png a.png
 refuse 'no such channel' '--channels R,Q: a.exr has only R, G, B, A' --channels R,Q a.exr b.exr
 refuse 'no channels' 'expected names' --channels= a.exr b.exr
+escape=$(printf 'A\033X')
+oiiotool --create 8x8 3 --attrib oiio:subimagename "$escape" -o escape8.exr
+oiiotool --create 9x8 3 --attrib oiio:subimagename "$escape" -o escape9.exr
+exits 3 'a name of control characters' "$peel" diff escape8.exr escape9.exr
+has 'a name of control characters' 'sizes differ: escape8.exr: A?X has 8x8'
+# The picture is of the first part that both have and that differs.
+part() {
+    oiiotool --pattern constant:color="$1,$1,$1" 8x6 3 --attrib oiio:subimagename "$2" -o "$2$1.exr"
+}
+part 0.5 first
+part 0.5 same
+part 0.25 other
+part 0.75 other
+oiiotool first0.5.exr same0.5.exr other0.25.exr --siappendall -o three.exr
+oiiotool same0.5.exr other0.75.exr --siappendall -o last_two.exr
+exits 2 'a part that one file lacks' "$peel" diff -a -o parts.exr three.exr last_two.exr
+exits 0 'it is not pictured' sh -c 'oiiotool --stats parts.exr | grep -q "Stats Max: -0.5"'
 refuse 'one file' 'expected two files' a.exr
 refuse 'three files' 'expected two files, already given' a.exr b.exr a.exr
 for option in -fail -failrelative -hardfail -warn -warnrelative -hardwarn; do

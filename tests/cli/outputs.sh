@@ -91,6 +91,11 @@ for list in 'hard --list --json a.json' 'hard fan --export hard --report hard' \
     exits 4 'what would be left out' "$peel" $list
 done
 
+ln -s to_come.exr linked.exr
+exits 4 'two outputs by a link' "$peel" render chain.gltf --size 33x17 -o to_come.exr --trace linked.exr
+exits 4 'a picture of the report' "$peel" compare chain.gltf --size 33x17 --report pictures \
+    --json pictures/ref.png
+expect 'said' grep -q 'pictures/ref.png: two outputs in one file' output
 exits 0 'glb' "$peel" scenes chain -o chain.glb
 exits 0 'compare glb' "$peel" compare chain.glb --size 64x36
 exits 2 'a tolerance that nothing meets' "$peel" compare chain.gltf --size 64x36 --tolerance 0

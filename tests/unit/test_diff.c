@@ -320,6 +320,14 @@ START_TEST(test_channels)
     ck_assert_double_eq(part.channels[1].max, 1e6);
     ck_assert_int_eq(part.verdict, DIFF_FAILURE);
     diff_part_free(&part);
+    /* Where so many may fail, they are held against the hard limit all the same. */
+    options.fail.percent = 100;
+    for (int i = 0; i < 2; i++) {
+        options.fail.hard = i ? 1e6 : 1e6 - 1;
+        ck_assert_int_eq(diff_planes(&row_a.planes, &row_b.planes, &options, &part), RESULT_OK);
+        ck_assert(i == (part.verdict != DIFF_FAILURE));
+        diff_part_free(&part);
+    }
     free(a);
     free(b);
 }

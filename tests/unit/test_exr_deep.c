@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/random.h"
+#include "compare/diff_files.h"
 #include "foreign_deep.h"
 #include "image/exr.h"
 #include "image/exr_deep_core.h"
@@ -243,11 +244,57 @@ START_TEST(test_foreign_refused)
     write_foreign(&counts, path);
     ck_assert_int_eq(refuse(path, 50), RESULT_NO_MEMORY);
     ck_assert_msg(exr_deep_read(path, MEMORY, &image) == RESULT_OK, "%s", result_message());
+    size_t kept = image.bytes;
     deep_free(&image);
+    /* What a row takes while it is unpacked counts: its samples twice, at least. */
+    ck_assert_int_eq(refuse(path, kept + 2 * 40 - 1), RESULT_NO_MEMORY);
     Foreign lacking = {{"A", "B", "G", "R"}, FLOATS, 1, {1}, values, 16, false};
     write_foreign(&lacking, path);
     ck_assert_int_eq(refuse(path, MEMORY), RESULT_UNSUPPORTED);
     ck_assert_ptr_nonnull(strstr(result_message(), "no channel Z"));
+}
+END_TEST
+
+/* A part of deep tiles first, then one of scanlines, of one sample each. */
+static void write_behind_tiles(const char *path)
+{
+    static const char *const channels[] = RGBAZ;
+    static const float sample[5] = {1, 1, 1, 1, 2};
+    exr_context_t context;
+    const uint32_t one = 1;
+    int index, failed = 0;
+    failed |= exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, NULL);
+    failed |= exr_add_part(context, "tiles", EXR_STORAGE_DEEP_TILED, &index);
+    failed |= exr_add_part(context, "rows", EXR_STORAGE_DEEP_SCANLINE, &index);
+    for (int part = 0; part < 2; part++) {
+        failed |= exr_initialize_required_attr_simple(context, part, 1, 1, EXR_COMPRESSION_NONE);
+        for (int i = 0; i < 5; i++)
+            failed |= exr_add_channel(context, part, channels[i], EXR_PIXEL_FLOAT,
+                                      EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    }
+    failed |= exr_set_tile_descriptor(context, 0, 1, 1, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN);
+    failed |= exr_write_header(context);
+    failed |= exr_write_deep_tile_chunk(context, 0, 0, 0, 0, 0, sample, sizeof sample,
+                                        sizeof sample, &one, sizeof one);
+    failed |= exr_write_deep_scanline_chunk(context, 1, 0, sample, sizeof sample, sizeof sample,
+                                            &one, sizeof one);
+    failed |= exr_finish(&context);
+    ck_assert_int_eq(failed, 0);
+}
+
+START_TEST(test_behind_tiles)
+{
+    const char *path = scratch_path("a.exr");
+    const DiffFilesOptions options = {0};
+    DeepImage image;
+    DiffReport report;
+    write_behind_tiles(path);
+    ck_assert_msg(exr_deep_read(path, MEMORY, &image) == RESULT_OK, "%s", result_message());
+    ck_assert_int_eq(image.part, 1);
+    deep_free(&image);
+    ck_assert_int_eq(diff_files(path, path, &options, &report), RESULT_UNSUPPORTED);
+    ck_assert_ptr_nonnull(strstr(result_message(), "part 0 is of deep tiles"));
+    diff_report_free(&report);
 }
 END_TEST
 
@@ -430,6 +477,7 @@ int main(void)
     tcase_add_test(tests, test_run_lengths);
     tcase_add_test(tests, test_half_and_more_channels);
     tcase_add_test(tests, test_foreign_refused);
+    tcase_add_test(tests, test_behind_tiles);
     tcase_add_test(tests, test_oiiotool_files);
     tcase_add_test(tests, test_broken_runs);
     tcase_add_test(tests, test_truncated);

@@ -334,6 +334,24 @@ START_TEST(wrong_types)
 }
 END_TEST
 
+/* One that is not of unit length would scale and shear. */
+START_TEST(rotations)
+{
+    Scene scene;
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"rotation\":[0,0,2,0]}]",
+            RESULT_BAD_INPUT, "node 0: expected a unit quaternion");
+    refused(QUAD_MESH
+            ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"rotation\":[0,0,0,0]}]",
+            RESULT_BAD_INPUT, "node 0: expected a unit quaternion");
+    const char *rounded =
+        write_quad(quad, QUAD_MESH ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,"
+                                   "\"rotation\":[0,0,0.707,0.707]}]");
+    ck_assert_msg(gltf_load(rounded, &scene) == RESULT_OK, "%s", result_message());
+    scene_free(&scene);
+}
+END_TEST
+
 /* Messages have the document's numbers, also behind materials, lights and cameras that nothing
  * uses. */
 START_TEST(numbers)
@@ -364,6 +382,7 @@ int main(void)
     tcase_add_checked_fixture(test, scratch_make, scratch_remove);
     tcase_add_test(test, bad_files);
     tcase_add_test(test, numbers);
+    tcase_add_test(test, rotations);
     tcase_add_test(test, deep_garbage);
     tcase_add_test(test, truncated_files);
     tcase_add_test(test, embedded_buffers);
